@@ -1,0 +1,217 @@
+"""Points, poses, boxes and the camera, in the one world frame.
+
+World frame: right-handed, metres, X right, Y forward at yaw 90 degrees, Z up, floor at z = 0.
+Angles are radians, counter-clockwise seen from above; yaw 0 faces +X. Pixels: origin top left,
+u to the right, v down, pixel centres at half integers.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Vec3:
+    """A point or vector in metres."""
+
+    x: float
+    y: float
+    z: float
+
+    @classmethod
+    def of(cls, values: Array | tuple[float, ...] | list[float]) -> Vec3:
+        """Build from any sequence of three numbers."""
+        x, y, z = values
+        return cls(float(x), float(y), float(z))
+
+    def array(self) -> Array:
+        """The same as a (3,) float64 array."""
+        return np.array([self.x, self.y, self.z])
+
+    def __add__(self, other: Vec3) -> Vec3:
+        return Vec3(self.x + other.x, self.y + other.y, self.z + other.z)
+
+    def __sub__(self, other: Vec3) -> Vec3:
+        return Vec3(self.x - other.x, self.y - other.y, self.z - other.z)
+
+    def __mul__(self, factor: float) -> Vec3:
+        return Vec3(self.x * factor, self.y * factor, self.z * factor)
+
+    def norm(self) -> float:
+        """Euclidean length in metres."""
+        return math.sqrt(self.x * self.x + self.y * self.y + self.z * self.z)
+
+    def distance(self, other: Vec3) -> float:
+        """Euclidean distance in metres."""
+        return (self - other).norm()
+
+    def horizontal_distance(self, other: Vec3) -> float:
+        """Distance in the floor plane in metres."""
+        return math.hypot(self.x - other.x, self.y - other.y)
+
+    def rounded(self, digits: int = 3) -> Vec3:
+        """Each coordinate rounded; negative zero becomes zero."""
+        return Vec3(*(round(v, digits) + 0.0 for v in (self.x, self.y, self.z)))
+
+    def __str__(self) -> str:
+        return f"({self.x:.2f}, {self.y:.2f}, {self.z:.2f})"
+
+
+@dataclass(frozen=True, slots=True)
+class Quaternion:
+    """A unit rotation quaternion, scalar first."""
+
+    w: float = 1.0
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+
+    @classmethod
+    def from_yaw(cls, yaw_rad: float) -> Quaternion:
+        """Rotation about +Z."""
+        return cls(math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
+
+    def array(self) -> Array:
+        """(4,) float64, scalar first, as MuJoCo has it."""
+        return np.array([self.w, self.x, self.y, self.z])
+
+    def matrix(self) -> Array:
+        """(3, 3) rotation matrix, world_from_local."""
+        w, x, y, z = self.w, self.x, self.y, self.z
+        return np.array(
+            [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+            ]
+        )
+
+    @property
+    def yaw_rad(self) -> float:
+        """Heading of the rotated X axis, in (-pi, pi]."""
+        return math.atan2(
+            2 * (self.w * self.z + self.x * self.y), 1 - 2 * (self.y**2 + self.z**2)
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """An oriented box: the local bounding box of a thing, placed in the world."""
+
+    center: Vec3
+    """Centre in the world, metres."""
+    size: Vec3
+    """Full edge lengths along the local axes, metres; they do not change when the thing turns."""
+    orientation: Quaternion = Quaternion()
+    """world_from_local rotation."""
+
+    @property
+    def volume_m3(self) -> float:
+        """Volume in cubic metres; invariant under rotation."""
+        return self.size.x * self.size.y * self.size.z
+
+    def corners(self) -> Array:
+        """(8, 3) corner points in the world, metres."""
+        signs = np.array([[sx, sy, sz] for sx in (-1, 1) for sy in (-1, 1) for sz in (-1, 1)])
+        local = signs * self.size.array() / 2
+        return np.asarray(local @ self.orientation.matrix().T + self.center.array())
+
+    @property
+    def bottom_z(self) -> float:
+        """Lowest z of the box, metres."""
+        return float(self.corners()[:, 2].min())
+
+    @property
+    def top_z(self) -> float:
+        """Highest z of the box, metres."""
+        return float(self.corners()[:, 2].max())
+
+    @property
+    def radius_m(self) -> float:
+        """Radius of the upright cylinder around the centre that holds the box, metres."""
+        offsets = self.corners()[:, :2] - self.center.array()[:2]
+        return float(np.hypot(offsets[:, 0], offsets[:, 1]).max())
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A pinhole camera without roll."""
+
+    position: Vec3
+    """Optical centre, world metres."""
+    yaw_rad: float
+    """Heading of the optical axis."""
+    pitch_rad: float
+    """Elevation of the optical axis; positive looks up."""
+    fov_y_rad: float
+    """Vertical field of view."""
+    width_px: int
+    height_px: int
+
+    @property
+    def focal_px(self) -> float:
+        """Focal length in pixels (square pixels, principal point in the middle)."""
+        return self.height_px / 2 / math.tan(self.fov_y_rad / 2)
+
+    @property
+    def intrinsics(self) -> Array:
+        """(3, 3) matrix K: pixels from camera coordinates (x right, y down, z forward)."""
+        f = self.focal_px
+        return np.array([[f, 0, self.width_px / 2], [0, f, self.height_px / 2], [0, 0, 1]])
+
+    @property
+    def world_from_camera(self) -> Array:
+        """(3, 3) rotation whose columns are the camera's right, down and forward in the world."""
+        cy, sy = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        cp, sp = math.cos(self.pitch_rad), math.sin(self.pitch_rad)
+        right, down, forward = (sy, -cy, 0.0), (cy * sp, sy * sp, -cp), (cy * cp, sy * cp, sp)
+        return np.array([right, down, forward]).T
+
+    def project(self, points: Array) -> Array:
+        """Project world points.
+
+        Args:
+            points: (N, 3) world metres.
+
+        Returns:
+            (N, 3): u and v in pixels and the depth along the optical axis in metres. Points
+            behind the camera have a depth <= 0 and meaningless pixels.
+        """
+        local = (np.asarray(points) - self.position.array()) @ self.world_from_camera
+        depth = local[:, 2]
+        safe = np.where(np.abs(depth) < 1e-9, 1e-9, depth)
+        u = self.width_px / 2 + self.focal_px * local[:, 0] / safe
+        v = self.height_px / 2 + self.focal_px * local[:, 1] / safe
+        return np.stack([u, v, depth], axis=1)
+
+    def rays(self, pixels: Array) -> Array:
+        """Unit directions in the world through pixels.
+
+        Args:
+            pixels: (N, 2) u and v.
+
+        Returns:
+            (N, 3) unit vectors.
+        """
+        pixels = np.asarray(pixels)
+        local = np.stack(
+            [
+                (pixels[:, 0] - self.width_px / 2) / self.focal_px,
+                (pixels[:, 1] - self.height_px / 2) / self.focal_px,
+                np.ones(len(pixels)),
+            ],
+            axis=1,
+        )
+        world = local @ self.world_from_camera.T
+        return np.asarray(world / np.linalg.norm(world, axis=1, keepdims=True))
+
+
+def wrap_angle(angle_rad: float) -> float:
+    """The same angle in (-pi, pi]."""
+    return math.pi - (math.pi - angle_rad) % (2 * math.pi)
