@@ -1,1 +1,35 @@
-"""ADAMO: a body in a 3D room for vision-language models, and the benchmark around it."""
+"""ADAMO: a body in a 3D room for vision-language models, and the benchmark around it.
+
+    import adamo
+
+    result = adamo.run_episode("Put the plate on the floor", scene="s1", model="baseline")
+    print(result.answer, result.termination)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from adamo.assemble import create_engine, replay_episode, run_episode
+    from adamo.benchmark.episode import EpisodeResult
+    from adamo.errors import AdamoError
+
+__all__ = ["AdamoError", "EpisodeResult", "create_engine", "replay_episode", "run_episode"]
+
+_HOME = {
+    "AdamoError": "adamo.errors",
+    "EpisodeResult": "adamo.benchmark.episode",
+    "create_engine": "adamo.assemble",
+    "replay_episode": "adamo.assemble",
+    "run_episode": "adamo.assemble",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import the public names when they are first used, so that `import adamo` stays fast."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'adamo' has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(_HOME[name]), name)

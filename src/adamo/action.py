@@ -128,9 +128,9 @@ class Feedback:
     """One short, truthful sentence or two."""
 
     @classmethod
-    def refused(cls, code: str, text: str) -> Feedback:
-        """A refusal: nothing changed in the world."""
-        return cls(Outcome.REFUSED, code, text)
+    def of_error(cls, error: InvalidActionError) -> Feedback:
+        """The refusal that an invalid call gets: nothing changed in the world."""
+        return cls(Outcome.REFUSED, error.code, f"Refused: {error}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,12 +178,12 @@ def parse(name: str, arguments: Mapping[str, Any] | None, actions: Iterable[type
     if name not in known:
         offer = ", ".join(known)
         raise InvalidActionError(
-            Code.UNKNOWN_TOOL, f"There is no tool named {name[:60]!r}. Tools: {offer}."
+            Code.UNKNOWN_TOOL, f"there is no tool named {name[:60]!r}. Tools: {offer}."
         )
     signature = ", ".join(tool_schema(known[name]).parameters.get("properties", {}))
     if arguments is None:
         raise InvalidActionError(
-            Code.BAD_ARGUMENT, f"The arguments are not a JSON object. Usage: {name}({signature})."
+            Code.BAD_ARGUMENT, f"the arguments are not a JSON object. Usage: {name}({signature})."
         )
     try:
         return TypeAdapter(known[name]).validate_python(dict(arguments))

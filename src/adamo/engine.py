@@ -7,7 +7,7 @@ one is `adamo.runtime.builtin.BuiltinEngine`; others follow the same protocol.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -17,6 +17,17 @@ from adamo.observation import BodyState, Percept
 
 FLOOR = "floor"
 """Name of the floor as a support."""
+
+
+def object_support(object_id: int) -> str:
+    """Name of an interactable object as a support."""
+    return f"object {object_id}"
+
+
+def supporting_object(support: str) -> int | None:
+    """Id of the object that a support name means, or None for furniture and floor."""
+    kind, _, number = support.partition(" ")
+    return int(number) if kind == "object" and number.isdigit() else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +72,8 @@ class ObjectState:
     class_name: str
     box: Box
     support: str | None
-    """Name of the furniture or object it rests on, "floor", or None if held or in the air."""
+    """Name of the furniture it rests on ("table", "shelf/top"), "floor", `object_support(id)`, or None
+    if held or in the air."""
     held: bool
 
 
@@ -128,6 +140,11 @@ class Engine(Protocol):
     @property
     def scene(self) -> SceneInfo:
         """Name, extent and areas of the loaded scene."""
+        ...
+
+    @property
+    def object_names(self) -> Mapping[int, str]:
+        """Class of every interactable object, by id; labelings make tags of it."""
         ...
 
     def reset(self, seed: int) -> None:

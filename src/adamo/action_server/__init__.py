@@ -1,0 +1,14 @@
+"""The Action Server: carries tool calls out in an engine and tells what became of them."""
+
+from adamo.action_server.local import LocalActionServer
+from adamo.action_server.protocol import ActionResult, ActionServer
+from adamo.action_server.tools import PAPER_TOOLS, Tool, ToolContext
+
+__all__ = [
+    "PAPER_TOOLS",
+    "ActionResult",
+    "ActionServer",
+    "LocalActionServer",
+    "Tool",
+    "ToolContext",
+]

@@ -1,0 +1,1 @@
+"""Procedural household objects, furniture and the human, each from one builder."""

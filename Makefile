@@ -1,0 +1,70 @@
+# Every target sets up what it needs by itself, once; see tools/setup.sh.
+# Settings: PYTHON=/path/to/python3.12   WORKERS=2   PYTEST_FLAGS="-k drop"
+
+VENV := .venv
+BIN := $(VENV)/bin
+WORKERS ?= 2
+PYTEST_FLAGS ?=
+DEMO := runs/demo
+
+export VENV
+ifdef PYTHON
+export PYTHON
+endif
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test test-all check format bench venv clean
+# Two set-ups at once would write to the same environment.
+.NOTPARALLEL:
+
+help: ## Show this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /|/' | \
+		while IFS='|' read -r name text; do printf '  make %-9s %s\n' "$$name" "$$text"; done
+
+demo: $(VENV)/.package $(VENV)/.gl ## Watch the built-in baseline carry out an instruction
+	@rm -rf $(DEMO)
+	@$(BIN)/adamo run "Pick the glass then place it next to the plate" \
+		--scene s1 --model baseline --out $(DEMO)
+	@find $(CURDIR)/$(DEMO) -name '*.html' -exec printf '\nOpen in a browser: %s\n' {} +
+
+test: $(VENV)/.dev $(VENV)/.gl ## Run the tests, without the slow ones
+	@$(BIN)/pytest -n $(WORKERS) -m "not slow" $(PYTEST_FLAGS)
+
+test-all: $(VENV)/.dev $(VENV)/.gl ## Run all tests
+	@$(BIN)/pytest -n $(WORKERS) $(PYTEST_FLAGS)
+
+check: $(VENV)/.dev ## Formatting, lint, types and layers, as CI does
+	@failed=; for gate in "ruff format --check ." "ruff check ." "mypy" "lint-imports --no-logo"; do \
+		echo "==> $$gate"; $(BIN)/$$gate || failed="$$failed [$$gate]"; \
+	done; [ -z "$$failed" ] || { echo "==> Failed:$$failed"; exit 1; }
+
+format: $(VENV)/.dev ## Put the code in order: formatting, imports, safe fixes
+	@$(BIN)/ruff check --fix .
+	@$(BIN)/ruff format .
+
+bench: $(VENV)/.package $(VENV)/.gl ## Measure speed; figures go to runs/bench/*.json
+	@mkdir -p runs/bench
+	@for script in $$(grep -l -e '"--json"' benchmarks/*.py); do \
+		echo "==> $$script"; \
+		$(BIN)/python "$$script" --json "runs/bench/$$(basename "$$script" .py).json" || exit 1; \
+	done
+
+venv: $(VENV)/.dev ## Only set up .venv, with the tools for tests and checks
+
+clean: ## Remove the environment, caches and demo runs; other runs stay
+	rm -rf $(VENV) .cache .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf build dist $(DEMO) runs/bench
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# The stamps remember what is set up; a change of the dependencies makes it again.
+$(VENV)/.package: pyproject.toml
+	@tools/setup.sh package
+	@touch $@
+
+$(VENV)/.dev: pyproject.toml
+	@tools/setup.sh dev
+	@touch $@ $(VENV)/.package
+
+$(VENV)/.gl: | $(VENV)/.package
+	@tools/setup.sh gl
+	@touch $@

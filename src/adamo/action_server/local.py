@@ -1,0 +1,107 @@
+"""The Action Server in the same process as the engine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from adamo.action import Action, Code, Feedback, Outcome, action_name
+from adamo.action_server.protocol import ActionResult
+from adamo.action_server.tools import PAPER_TOOLS, Tool
+from adamo.engine import Engine
+from adamo.errors import InvalidActionError
+from adamo.observation import AgentState, Observation
+from adamo.perception import PerceptionConfig, agent_state, perceive
+
+PAPER_REFRESH = frozenset({"Look"})
+"""The paper's refresh rule: a new view at the start and after Look only (Sec. 3.1)."""
+
+
+class LocalActionServer:
+    """Executes actions on an engine. Implements `ActionServer` and `ToolContext`."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        *,
+        perception: PerceptionConfig | None = None,
+        resolution: tuple[int, int] = (1920, 1080),
+        tools: Sequence[Tool] = PAPER_TOOLS,
+        refresh_after: frozenset[str] = PAPER_REFRESH,
+    ) -> None:
+        """Serve one episode.
+
+        Args:
+            engine: The world, already reset.
+            perception: Labeling, grid and picture settings.
+            resolution: Width and height of the frames in pixels.
+            tools: The primitives on offer.
+            refresh_after: Names of the actions that are followed by a new view.
+        """
+        self.engine = engine
+        self._perception = perception or PerceptionConfig()
+        self._resolution = resolution
+        self._tools = {tool.action_type: tool for tool in tools}
+        self._refresh_after = refresh_after
+        self._names = engine.object_names
+        self._seen: set[int] = set()
+
+    @property
+    def actions(self) -> tuple[type, ...]:
+        """The action types on offer."""
+        return tuple(self._tools)
+
+    @property
+    def seen(self) -> frozenset[int]:
+        """Ids of the objects that were listed in a view so far."""
+        return frozenset(self._seen)
+
+    def tag(self, object_id: int) -> str:
+        """The tag of an object under the labeling in use."""
+        return self._perception.labeling.tag(object_id, self._names[object_id])
+
+    def seen_object(self, tag: str) -> int:
+        """The object that a tag means, if it was in a view before.
+
+        Unknown and unseen tags read the same, so that guessing reveals nothing.
+
+        Raises:
+            InvalidActionError: No object with this tag was seen so far.
+        """
+        object_id = self._perception.labeling.resolve(tag, self._names)
+        if object_id is None or object_id not in self._seen:
+            code = Code.UNKNOWN_TAG if object_id is None else Code.NOT_SEEN
+            raise InvalidActionError(code, f"no object tagged {tag!r} was seen so far.")
+        return object_id
+
+    def observe(self) -> Observation:
+        """The view from where the body stands now; what it lists counts as seen."""
+        percept = self.engine.capture(*self._resolution)
+        observation = perceive(percept, self.engine.raycast, self._perception, self._names)
+        for item in observation.objects:
+            object_id = self._perception.labeling.resolve(item.tag, self._names)
+            if object_id is not None:
+                self._seen.add(object_id)
+        return observation
+
+    def execute(self, action: Action) -> ActionResult:
+        """Carry out one action of a type on offer; what the agent did wrong becomes feedback."""
+        try:
+            feedback = self._tools[type(action)].execute(self, action)
+        except InvalidActionError as error:
+            feedback = Feedback.of_error(error)
+        view = None
+        if feedback.outcome is not Outcome.REFUSED:
+            view = self.observe() if action_name(type(action)) in self._refresh_after else None
+        return ActionResult(feedback, self.agent(), view, self.state_hash())
+
+    def agent(self) -> AgentState:
+        """The body now, in the agent's words."""
+        return agent_state(self.engine.body(), self._perception.labeling, self._names)
+
+    def say(self, text: str) -> None:
+        """Deliver the final answer through the body."""
+        self.engine.say(text)
+
+    def state_hash(self) -> str:
+        """Digest of the world now."""
+        return self.engine.state().hash()

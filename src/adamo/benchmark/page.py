@@ -1,0 +1,190 @@
+"""The episode page: one HTML file that shows a whole episode and opens without a network.
+
+Notes, answers and feedback are what an untrusted model said: everything is escaped, and the page
+forbids itself every script but its own.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import math
+import re
+from collections import Counter
+from collections.abc import Callable
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from adamo.benchmark.episode import EpisodeResult, Manifest, read_manifest, read_result
+from adamo.benchmark.floor_plan import MARGIN_M, floor_plan
+from adamo.benchmark.timeline import turns
+from adamo.cognition.termination import TerminationReason
+from adamo.cognition.trajectory import FRAMES, Ended, Trajectory, read_trajectory
+from adamo.geometry import Vec3
+from adamo.inference.model import Usage
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+PAGE = "episode.html"
+"""Name of the page in a run folder."""
+
+_FRAME_NAME = re.compile(r"[0-9a-f]{8,64}\.(jpg|png)")
+"""A recorded name must not lead out of the folder: what it names is put into the page."""
+_MEDIA_TYPE = {"jpg": "image/jpeg", "png": "image/png"}
+
+
+def write_page(folder: Path) -> Path:
+    """Draw the page of a run folder, from its records alone; an old page is replaced.
+
+    Args:
+        folder: The run folder; the episode may be unfinished.
+
+    Returns:
+        The page.
+
+    Raises:
+        RecordError: The folder holds no readable run.
+    """
+    page = render_page(
+        read_manifest(folder),
+        read_trajectory(folder),
+        read_result(folder),
+        lambda name: (folder / FRAMES / name).read_bytes(),
+    )
+    half = folder / f"{PAGE}.part"
+    half.write_bytes(page.encode("utf-8", "xmlcharrefreplace"))
+    return half.replace(folder / PAGE)
+
+
+def render_page(
+    manifest: Manifest,
+    trajectory: Trajectory,
+    result: EpisodeResult | None,
+    frames: Callable[[str], bytes],
+) -> str:
+    """Render the page of an episode.
+
+    Args:
+        manifest: How the episode was set up.
+        trajectory: What happened.
+        result: What came of it; None if it did not get that far.
+        frames: Gives a recorded picture by its name. A picture that it fails to find (`OSError`,
+            `LookupError`) is shown as missing.
+
+    Returns:
+        A complete HTML document without any reference to the outside.
+    """
+    steps = turns(trajectory)
+    style, script = _text("episode.css"), _text("episode.js")
+    return (
+        _environment()
+        .get_template("episode.html.j2")
+        .render(
+            config=manifest.config,
+            manifest=manifest,
+            events=trajectory,
+            ended=trajectory.ended,
+            verdict=_verdict(manifest, trajectory.ended, result),
+            result=result,
+            calls=dict(sorted(Counter(act.name for act in trajectory.acts).items())),
+            usage=sum((thought.usage for thought in trajectory.thoughts), Usage()),
+            turns=steps,
+            plan=floor_plan(manifest.initial, steps, result.final if result else None),
+            plan_margin=MARGIN_M,
+            picture=lambda name: _data_url(name, frames),
+            style=style,
+            script=script,
+            style_hash=_csp_hash(style),
+            script_hash=_csp_hash(script),
+        )
+    )
+
+
+def _verdict(
+    manifest: Manifest, ended: Ended | None, result: EpisodeResult | None
+) -> tuple[str, str, str]:
+    """How the episode ended: a tone for the colour, a headline and a sentence."""
+    limits = manifest.config.limits
+    if ended is None:
+        return (
+            "unfinished",
+            "Not finished",
+            "The record has no end: the run was stopped, or it is still going on.",
+        )
+    if ended.reason is TerminationReason.BROKEN:
+        return (
+            "broken",
+            "Unscored",
+            "The episode broke through a fault that is not the model's; it does not count.",
+        )
+    if result is None:
+        return "unfinished", "Not scored", "The episode ended, but its result was never written."
+    match ended.reason:
+        case TerminationReason.STEP_LIMIT:
+            return "truncated", "Step limit", f"Stopped after {limits.max_steps} steps."
+        case TerminationReason.TIME_LIMIT:
+            return "truncated", "Time limit", f"Stopped after {limits.max_seconds:g} s."
+        case TerminationReason.EMPTY_REPLY:
+            return "truncated", "Empty reply", "The model said nothing, also after a reminder."
+        case _:
+            return "ended", "Answered", "The model ended the episode."
+
+
+def _data_url(name: str, frames: Callable[[str], bytes]) -> str | None:
+    match = _FRAME_NAME.fullmatch(name)
+    if match is None:
+        return None
+    try:
+        data = frames(name)
+    except (OSError, LookupError):
+        return None
+    return f"data:{_MEDIA_TYPE[match[1]]};base64,{base64.b64encode(data).decode('ascii')}"
+
+
+def _csp_hash(text: str) -> str:
+    """A source expression that allows exactly this inline text."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
+
+
+def _text(name: str) -> str:
+    folder = resources.files(__package__) / "templates"
+    return (folder / name).read_text(encoding="utf-8")
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FunctionLoader(_text),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(place=_place, degrees=_degrees, seconds=_seconds, thousands=_thousands)
+    return environment
+
+
+def _place(point: Vec3, digits: int = 2) -> str:
+    # Rounding first turns -0.001 into 0.00, never -0.00.
+    p = point.rounded(digits)
+    return f"({p.x:.{digits}f}, {p.y:.{digits}f}, {p.z:.{digits}f})"
+
+
+def _degrees(angle_rad: float) -> str:
+    return f"{round(math.degrees(angle_rad)) % 360}°"
+
+
+def _seconds(value: float) -> str:
+    if value < 1:
+        return f"{value * 1000:.0f} ms"
+    return f"{value:.1f} s" if value < 120 else f"{value // 60:.0f} min {value % 60:.0f} s"
+
+
+def _thousands(value: int) -> str:
+    return f"{value:,}"

@@ -1,0 +1,120 @@
+"""The commands of `adamo`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+app = typer.Typer(
+    help="Give a vision-language model a body in a 3D room, and measure why it succeeds or fails.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+tasks_app = typer.Typer(help="The benchmark's tasks.", invoke_without_command=True)
+app.add_typer(tasks_app, name="tasks")
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+
+
+@app.command()
+def run(
+    instruction: Annotated[
+        Optional[str], typer.Argument(help="What the agent is told.", show_default=False)
+    ] = None,
+    task: Annotated[
+        Optional[str], typer.Option(help="A benchmark task instead: T1 to T15.")
+    ] = None,
+    scene: Annotated[str, typer.Option(help="Built-in scene or scene file.")] = "s1",
+    labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
+    model: Annotated[
+        str,
+        typer.Option(
+            help="baseline, scripted:FILE.json, replay:RUN_DIR, openai:NAME or openai:NAME@URL."
+        ),
+    ] = "baseline",
+    seed: Annotated[int, typer.Option(help="Seed of the episode.")] = 0,
+    k: Annotated[int, typer.Option(help="Steps in the short-term memory.")] = 50,
+    grid: Annotated[int, typer.Option(help="Reference points along a side.")] = 6,
+    resolution: Annotated[str, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = "1920x1080",
+    text: Annotated[str, typer.Option(help="Symbolic text: full or paper.")] = "full",
+    max_steps: Annotated[int, typer.Option(help="Step cap.")] = 60,
+    out: Annotated[
+        Optional[Path], typer.Option(help="Run folder; a new one below runs/ by default.")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Run one episode: an instruction in plain words, or a task of the benchmark."""
+    from adamo.cli.episode import run_and_show
+
+    run_and_show(
+        instruction,
+        as_json=json,
+        out=out,
+        task=task,
+        scene=scene,
+        labeling=labeling,
+        model=model,
+        seed=seed,
+        k=k,
+        grid=grid,
+        resolution=resolution,
+        text_form=text,
+        max_steps=max_steps,
+    )
+
+
+@app.command()
+def replay(
+    run_dir: Annotated[Path, typer.Argument(help="A run folder.")], json: Json = False
+) -> None:
+    """Execute a recorded episode again, without its model, and verify every state hash."""
+    from adamo.cli.episode import replay_and_show
+
+    replay_and_show(run_dir, as_json=json)
+
+
+@app.command()
+def report(run_dir: Annotated[Path, typer.Argument(help="A run folder.")]) -> None:
+    """Write the page of a recorded episode again."""
+    from adamo.benchmark.page import write_page
+
+    typer.echo(write_page(run_dir))
+
+
+@tasks_app.callback()
+def tasks(context: typer.Context, json: Json = False) -> None:
+    """List the tasks with their C-D levels."""
+    if context.invoked_subcommand is None:
+        from adamo.cli.tasks import list_tasks
+
+        list_tasks(as_json=json)
+
+
+@tasks_app.command("verify")
+def tasks_verify(
+    scene: Annotated[Optional[str], typer.Option(help="One scene; all by default.")] = None,
+    json: Json = False,
+) -> None:
+    """Prove that the oracle solves every task and that doing nothing solves none."""
+    from adamo.cli.tasks import verify
+
+    verify(scene, as_json=json)
+
+
+@app.command()
+def scenes(json: Json = False) -> None:
+    """List the scenes that come with the package."""
+    from adamo.cli.tasks import list_scenes
+
+    list_scenes(as_json=json)
+
+
+@app.command()
+def doctor(json: Json = False) -> None:
+    """Check this machine: graphics, cache, keys, versions; every problem comes with its fix."""
+    from adamo.cli.doctor import examine
+
+    examine(as_json=json)

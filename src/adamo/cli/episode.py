@@ -1,0 +1,152 @@
+"""`adamo run` and `adamo replay`: live progress, and the result as text or JSON."""
+
+from __future__ import annotations
+
+import json
+import re
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+
+from adamo.benchmark.episode import EpisodeResult, to_json
+from adamo.cli.progress import Progress
+from adamo.cognition.termination import Limits
+from adamo.errors import ConfigError
+
+RUNS = Path("runs")
+
+
+def run_and_show(
+    instruction: str | None,
+    *,
+    as_json: bool,
+    out: Path | None,
+    resolution: str,
+    max_steps: int,
+    **settings: Any,
+) -> None:
+    """Run an episode and print what happens, or one JSON object at the end."""
+    from adamo.assemble import run_episode
+
+    folder = out or new_run_folder(settings["task"] or instruction or "")
+    progress = () if as_json else (Progress(Console()),)
+    result = run_episode(
+        instruction,
+        resolution=parse_resolution(resolution),
+        limits=Limits(max_steps=max_steps),
+        out=folder,
+        observers=progress,
+        **settings,
+    )
+    if out is None:
+        _mark_latest(folder)
+    if as_json:
+        typer.echo(json.dumps(result_json(result)))
+    else:
+        _print_result(Console(), result, folder)
+    if not result.termination.is_scored:
+        raise typer.Exit(1)
+
+
+def replay_and_show(run_dir: Path, *, as_json: bool) -> None:
+    """Replay a run folder and say whether every state came out the same."""
+    from adamo.assemble import replay_episode
+
+    report = replay_episode(run_dir)
+    same = not report.mismatches
+    if as_json:
+        found = {"steps": report.steps, "same": same, "mismatches": report.mismatches}
+        typer.echo(json.dumps({**found, "frames_differ": report.frames_differ}))
+    elif same:
+        frames = "all frames equal" if not report.frames_differ else (
+            f"{report.frames_differ} frames differ in bytes (another machine or driver)"
+        )
+        typer.echo(f"Same: {report.steps} actions, every state hash equal; {frames}.")
+    else:
+        for line in report.mismatches:
+            typer.echo(f"Different: {line}")
+    if not same:
+        raise typer.Exit(1)
+
+
+def parse_resolution(text: str) -> tuple[int, int]:
+    """WIDTHxHEIGHT as two integers.
+
+    Raises:
+        ConfigError: The text has another form.
+    """
+    match = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text.strip().lower())
+    if match is None:
+        raise ConfigError(f"resolution {text!r}: write WIDTHxHEIGHT, for example 1920x1080.")
+    return int(match[1]), int(match[2])
+
+
+def new_run_folder(what: str) -> Path:
+    """A folder name below runs/ that is not taken."""
+    words = re.sub(r"[^a-z0-9]+", "-", what.lower()).strip("-")[:40].strip("-") or "episode"
+    stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
+    folder = RUNS / f"{stamp}-{words}"
+    number = 2
+    while folder.exists():
+        folder = RUNS / f"{stamp}-{words}-{number}"
+        number += 1
+    return folder
+
+
+def _mark_latest(folder: Path) -> None:
+    """Point runs/latest at the newest run, where the file system allows it."""
+    link = RUNS / "latest"
+    try:
+        link.unlink(missing_ok=True)
+        link.symlink_to(folder.name, target_is_directory=True)
+    except OSError:
+        pass
+
+
+def result_json(result: EpisodeResult) -> dict[str, Any]:
+    """The object that `adamo run --json` prints."""
+    data = to_json(result)
+    keys = (
+        "task instruction scene labeling model model_kind seed completion strict conditions "
+        "violations termination answer steps model_calls calls missing_notes tokens model_s "
+        "world_s run state_hash"
+    )
+    world = [
+        {
+            "id": item.id,
+            "tag": item.tag,
+            "class": item.class_name,
+            "position": [item.position.x, item.position.y, item.position.z],
+            "support": item.support,
+            "held": item.held,
+        }
+        for item in result.world()
+    ]
+    return {**{key: data[key] for key in keys.split()}, "world": world}
+
+
+def _print_result(console: Console, result: EpisodeResult, folder: Path) -> None:
+    def line(label: str, value: str) -> None:
+        console.print(f"[bold]{label:<11}[/bold]", end=" ")
+        console.print(value, markup=False, highlight=False, soft_wrap=True)
+
+    console.print()
+    line("answer", result.answer or f"(none: {result.termination})")
+    if result.completion is not None:
+        met = sum(c.satisfied for c in result.conditions)
+        line(
+            "score",
+            f"completion {result.completion:.2f} ({met} of {len(result.conditions)} conditions), "
+            f"strict {result.strict:.0f}",
+        )
+    elif not result.termination.is_scored:
+        line("score", "unscored: the fault is not the agent's")
+    for violation in result.violations:
+        line("", violation)
+    calls = ", ".join(f"{name} {count}" for name, count in result.calls.items()) or "none"
+    line("calls", f"{calls}; {result.tokens} tokens; {result.termination}")
+    line("time", f"model {result.model_s:.1f} s, world {result.world_s:.1f} s")
+    line("page", str(folder / "episode.html"))

@@ -1,0 +1,43 @@
+"""The fixed instructions (system prompt), filled in from the scene, the tools and the labeling."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from adamo.action import tool_schema
+from adamo.cognition.prompts import render
+from adamo.engine import SceneInfo
+from adamo.perception import Labeling
+
+_LABELING = {
+    Labeling.SEM: "- A tag says what an object is and its number: Class_number. "
+    "The number alone names the same object.",
+    Labeling.OPAQ: "- A tag is a number that says nothing about the object: "
+    "tell objects apart by how they look in the frame.",
+}
+
+
+def system_prompt(
+    scene: SceneInfo, labeling: Labeling, actions: Iterable[type], near_m: float
+) -> str:
+    """Render the system prompt.
+
+    Args:
+        scene: Room extent and areas.
+        labeling: How tags are made.
+        actions: Action types on offer.
+        near_m: What "near" means, metres.
+    """
+    corners = [area for area in scene.areas if area.kind == "corner"]
+    schemas = [tool_schema(action) for action in actions]
+    return render(
+        "system",
+        x_min=f"{scene.x_min:g}",
+        x_max=f"{scene.x_max:g}",
+        y_min=f"{scene.y_min:g}",
+        y_max=f"{scene.y_max:g}",
+        corner_m=f"{corners[0].x_max - corners[0].x_min:g}" if corners else "",
+        near_m=f"{near_m:g}",
+        labeling=_LABELING[labeling],
+        tools=", ".join(f"{s.name}({', '.join(s.parameters['properties'])})" for s in schemas),
+    )

@@ -1,0 +1,219 @@
+"""Looking at the pixels of each listed object: colours, white parts, print, shape, size.
+
+Boxes, tags and crosses that are drawn into the frame are left out as well as the text lets one know
+where they are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adamo.geometry import Camera
+from adamo.inference.baseline.colours import shares
+from adamo.inference.baseline.print_marks import print_share
+from adamo.inference.baseline.reading import Listed, Prompt
+from adamo.inference.baseline.sight import Sight
+from adamo.inference.baseline.view import camera_of
+
+Mask = NDArray[np.bool_]
+Picture = NDArray[np.uint8]
+PixelBox = tuple[int, int, int, int]
+
+_RING_PX = 12
+"""Width of the frame around a box that shows what is behind the object, at 1080 lines."""
+_BINS = 20
+"""Bins of a colour channel in the histogram of the background."""
+_LEAST_PIXELS = 12
+
+
+def sights(prompt: Prompt) -> Mapping[str, Sight]:
+    """Look at every listed thing that has a box.
+
+    Args:
+        prompt: Its latest frame must be the one that the list describes.
+
+    Returns:
+        Measurements by tag; empty without a frame or without boxes.
+    """
+    if prompt.frame is None or not any(thing.box_px for thing in prompt.things):
+        return {}
+    return _looked_at(prompt.frame.data, prompt.things, prompt.points_key, camera_of(prompt))
+
+
+@lru_cache(maxsize=8)
+def _looked_at(
+    data: bytes,
+    things: tuple[Listed, ...],
+    points: tuple[tuple[float, float, float], ...],
+    camera: Camera | None,
+) -> Mapping[str, Sight]:
+    import cv2
+
+    decoded = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    if decoded is None:
+        return {}
+    picture: Picture = np.asarray(decoded, np.uint8)
+    drawn = _drawn_over(picture, things, points, camera)
+    return {
+        thing.tag: _look_at(picture, drawn, thing, things, camera)
+        for thing in things
+        if thing.box_px
+    }
+
+
+def _drawn_over(
+    picture: Picture,
+    things: tuple[Listed, ...],
+    points: tuple[tuple[float, float, float], ...],
+    camera: Camera | None,
+) -> Mask:
+    """Where boxes, tags and crosses hide the picture."""
+    height, width = picture.shape[:2]
+    margin = max(1, round(height / 540)) + 3
+    drawn = np.zeros((height, width), bool)
+    for thing in things:
+        if thing.box_px:
+            left, top, right, bottom = thing.box_px
+            outer = _clipped((left - margin, top - margin, right + margin, bottom + margin), drawn)
+            ring = drawn[outer].copy()
+            ring[:margin] = ring[-margin:] = True
+            ring[:, :margin] = ring[:, -margin:] = True
+            drawn[outer] = ring
+    if camera is not None and points:
+        reach = max(3, round(height / 180)) + 3
+        for u, v, depth in camera.project(np.array(points)):
+            if depth > 0:
+                box = (int(u) - reach, int(v) - reach, int(u) + reach, int(v) + reach)
+                drawn[_clipped(box, drawn)] = True
+    return drawn
+
+
+def _clipped(box: PixelBox, picture: NDArray[np.generic]) -> tuple[slice, slice]:
+    height, width = picture.shape[:2]
+    left, top, right, bottom = box
+    return (
+        slice(min(max(0, top), height), min(max(0, bottom), height)),
+        slice(min(max(0, left), width), min(max(0, right), width)),
+    )
+
+
+def _look_at(
+    picture: Picture, drawn: Mask, thing: Listed, things: tuple[Listed, ...], camera: Camera | None
+) -> Sight:
+    assert thing.box_px is not None
+    left, top, right, bottom = thing.box_px
+    area = _clipped(thing.box_px, drawn)
+    crop = picture[area]
+    if crop.size == 0:
+        return Sight(0)
+    own = _own_part(thing, things, crop.shape[:2]) & ~drawn[area]
+    behind = _behind(picture, drawn, thing.box_px, crop)
+    solid = own & ~behind
+    width_m, extent_m, pitch = _metric(thing, camera)
+    height, width = picture.shape[:2]
+    if solid.sum() < _LEAST_PIXELS:
+        solid = own
+    return Sight(
+        pixels=int(solid.sum()),
+        colours=shares(crop, solid),
+        text=print_share(crop, solid),
+        roundness=_roundness(solid),
+        clear=float((own & behind).sum() / max(1, own.sum())),
+        width_m=width_m,
+        extent_m=extent_m,
+        pitch_rad=pitch,
+        cut=left <= 1 or top <= 1 or right >= width - 1 or bottom >= height - 1,
+    )
+
+
+def _own_part(thing: Listed, things: tuple[Listed, ...], shape: tuple[int, ...]) -> Mask:
+    """The part of a box where no nearer thing can be in front."""
+    own = np.ones(shape[:2], bool)
+    assert thing.box_px is not None
+    left, top, _, bottom = thing.box_px
+    for other in things:
+        # On one surface, what reaches lower in the picture stands nearer.
+        if other is thing or not other.box_px or other.box_px[3] <= bottom:
+            continue
+        l, t, r, b = other.box_px
+        own[_clipped((l - left, t - top, r - left, b - top), own)] = False
+    return own if own.mean() > 0.15 else np.ones(shape[:2], bool)
+
+
+def _behind(picture: Picture, drawn: Mask, box: PixelBox, crop: Picture) -> Mask:
+    """Pixels of a box that have the colours of the frame around it."""
+    import cv2
+
+    ring_px = max(4, round(_RING_PX * picture.shape[0] / 1080))
+    left, top, right, bottom = box
+    outer = _clipped((left - ring_px, top - ring_px, right + ring_px, bottom + ring_px), drawn)
+    usable = ~drawn[outer]
+    inner_top, inner_left = top - outer[0].start, left - outer[1].start
+    usable[inner_top : inner_top + bottom - top, inner_left : inner_left + right - left] = False
+    around = picture[outer][usable]
+    if len(around) < 30:
+        return np.zeros(crop.shape[:2], bool)
+    counts = np.zeros((_BINS,) * 3, np.float32)
+    np.add.at(counts, tuple(_bins(around).T), 1.0)
+    for axis in range(3):  # JPEG and shading move colours to neighbouring bins
+        counts = counts + np.roll(counts, 1, axis) + np.roll(counts, -1, axis)
+    likely = counts > 0.02 * len(around)
+    bins = _bins(crop.reshape(-1, 3))
+    found = likely[bins[:, 0], bins[:, 1], bins[:, 2]].reshape(crop.shape[:2])
+    return np.asarray(cv2.medianBlur(found.astype(np.uint8), 3), bool)
+
+
+def _bins(pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
+    """Bins by brightness and by two colour differences, so that shading matters less."""
+    import cv2
+
+    lab = cv2.cvtColor(pixels.reshape(-1, 1, 3), cv2.COLOR_BGR2LAB).reshape(-1, 3).astype(np.int32)
+    lab[:, 0] = lab[:, 0] * _BINS // 256
+    lab[:, 1:] = np.clip((lab[:, 1:] - 128) // 5 + _BINS // 2, 0, _BINS - 1)
+    return lab
+
+
+def _roundness(mask: Mask) -> float:
+    """How well the silhouette fits its own ellipse: overlap with it, as a share of the union."""
+    import cv2
+
+    filled = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    contours, _ = cv2.findContours(filled, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    if not contours:
+        return 0.0
+    outline = max(contours, key=cv2.contourArea)
+    if len(outline) < 12:
+        return 0.0
+    hull = cv2.convexHull(outline)
+    ellipse = cv2.fitEllipse(outline)
+    full, fitted = np.zeros(mask.shape, np.uint8), np.zeros(mask.shape, np.uint8)
+    cv2.drawContours(full, [hull], -1, 1, -1)
+    cv2.ellipse(fitted, ellipse, 1, -1)
+    union = int((full | fitted).sum())
+    return float((full & fitted).sum() / union) if union else 0.0
+
+
+def _metric(thing: Listed, camera: Camera | None) -> tuple[float | None, float | None, float]:
+    """Extents in metres at the thing's distance, and how steeply it is looked at."""
+    if camera is None or thing.box_px is None:
+        return None, None, 0.0
+    to = thing.position - camera.position
+    flat = math.hypot(to.x, to.y)
+    distance = to.norm()
+    if distance < 0.2:
+        return None, None, 0.0
+    left, top, right, bottom = thing.box_px
+    wide = _angle(camera, (left, (top + bottom) / 2), (right, (top + bottom) / 2))
+    tall = _angle(camera, ((left + right) / 2, top), ((left + right) / 2, bottom))
+    return wide * distance, tall * distance, math.atan2(-to.z, flat)
+
+
+def _angle(camera: Camera, one: tuple[float, float], other: tuple[float, float]) -> float:
+    """Angle between the rays through two pixels; right at the edge of a wide view too."""
+    a, b = camera.rays(np.array([one, other]))
+    return math.acos(min(1.0, max(-1.0, float(a @ b))))

@@ -1,0 +1,106 @@
+"""When a failed request is tried again, and for how long."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from adamo.errors import ConfigError, ProviderError
+
+T = TypeVar("T")
+
+_LONGEST_BACKOFF_S = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class RetryPolicy:
+    """Limits on trying again."""
+
+    max_tries: int = 6
+    """Requests at most for one answer."""
+    max_wait_s: float = 600.0
+    """Seconds at most that one answer may lose to failed tries and to the pauses between them."""
+    base_s: float = 1.0
+    """Pause after the first failure; doubles with each further one, up to a minute."""
+    timeout_s: float = 300.0
+    """Seconds at most for one try."""
+
+    def __post_init__(self) -> None:
+        """Refuse limits that make no sense."""
+        if self.max_tries < 1 or self.max_wait_s < 0 or self.base_s < 0 or self.timeout_s <= 0:
+            raise ConfigError(
+                f"{self} makes no sense: give at least one try, a positive timeout_s, and "
+                "max_wait_s and base_s that are not negative."
+            )
+
+    def pause_s(self, failures: int, asked_s: float | None) -> float:
+        """How long to pause.
+
+        Args:
+            failures: Failed tries so far, at least 1.
+            asked_s: Seconds that the server asked for (Retry-After), if it did.
+        """
+        backoff = min(self.base_s * 2.0 ** (failures - 1), _LONGEST_BACKOFF_S)
+        # Jitter spreads parallel episodes that met the same rate limit at the same moment.
+        return max(backoff * random.uniform(0.5, 1.0), asked_s or 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """Why one try failed."""
+
+    text: str
+    """For people; free of secrets."""
+    retryable: bool
+    retry_after_s: float | None = None
+    """Seconds that the server asked to wait."""
+
+
+@dataclass(frozen=True, slots=True)
+class Success(Generic[T]):
+    """What a try brought, and the time it and the failures before it took."""
+
+    value: T
+    seconds: float
+    waited_s: float
+
+
+def run_with_retries(
+    policy: RetryPolicy, name: str, attempt: Callable[[], T | Failure]
+) -> Success[T]:
+    """Try until an attempt succeeds or the policy says stop.
+
+    Args:
+        policy: The limits.
+        name: Name of the model, for the error.
+        attempt: One try; returns its value or why it failed.
+
+    Raises:
+        ProviderError: The last failure, if it was final or the limits are used up.
+    """
+    begin = time.monotonic()
+    for tries in range(1, policy.max_tries + 1):
+        start = time.monotonic()
+        outcome = attempt()
+        if not isinstance(outcome, Failure):
+            return Success(outcome, time.monotonic() - start, start - begin)
+        if not outcome.retryable:
+            raise ProviderError(f"{name}: {outcome.text}")
+        lost_s = time.monotonic() - begin
+        pause_s = policy.pause_s(tries, outcome.retry_after_s)
+        if tries == policy.max_tries or lost_s + pause_s > policy.max_wait_s:
+            raise ProviderError(f"{name}: {_last_words(policy, outcome, tries, lost_s)}")
+        time.sleep(pause_s)
+    raise AssertionError("unreachable: the last try returns or raises")
+
+
+def _last_words(policy: RetryPolicy, failure: Failure, tries: int, lost_s: float) -> str:
+    asked_s = failure.retry_after_s
+    asked = f" The server asked to wait {asked_s:.0f} s." if asked_s else ""
+    return (
+        f"{failure.text}{asked} Gave up after {tries} of {policy.max_tries} tries and "
+        f"{lost_s:.1f} s; at most {policy.max_wait_s:g} s may be lost."
+    )

@@ -1,0 +1,1 @@
+"""The household objects: one short builder each, grouped by theme."""

@@ -1,0 +1,264 @@
+"""The built-in engine: MuJoCo physics, headless pictures and the body behind `Engine`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from adamo.action import Code, Outcome
+from adamo.engine import BodyReport, ObjectState, SceneInfo, WorldState
+from adamo.geometry import Array, Camera, Vec3
+from adamo.observation import NOTHING, BodyState, Percept, SeenObject
+from adamo.runtime import physics
+from adamo.runtime.embodiment import REACH_M, REACH_TOP_M, Body
+from adamo.runtime.navigation import BODY_RADIUS_M, FloorMap, Path
+from adamo.runtime.placement import Spot, free_spots, spread
+from adamo.runtime.rendering import SceneRenderer
+from adamo.runtime.scenes.scene import Scene, load_scene
+from adamo.runtime.solids import Solid
+from adamo.runtime.world import World, build_world
+
+_AS_ASKED_M = 0.05
+"""A body or an object that ends this close to the wish counts as done, not corrected."""
+_REACH_MARGIN_M = 0.02
+_SHOULDERS_M = (1.35, 0.7)
+"""Heights from which a line to the target must be free: upright, or crouching."""
+_MAX_SPOT_CHECKS = 60
+
+
+class BuiltinEngine:
+    """A scene, its physics and one body. Implements `adamo.engine.Engine`."""
+
+    def __init__(self, scene: str | Scene = "s1") -> None:
+        """Load a scene and settle it.
+
+        Args:
+            scene: Name of a built-in scene, path of a scene file, or a loaded scene.
+
+        Raises:
+            SceneError: The scene is unknown or wrong.
+        """
+        self._scene = load_scene(scene) if isinstance(scene, str) else scene
+        self._info = self._scene.info()
+        self._world: World = build_world(self._scene)
+        self._renderer: SceneRenderer | None = None
+        self._said: list[str] = []
+        physics.settle(self._world, None)
+        self._settled = self._world.data.qpos.copy()
+        self._body = self._start()
+
+    @property
+    def scene(self) -> SceneInfo:
+        """Name, extent and areas of the loaded scene."""
+        return self._info
+
+    @property
+    def object_names(self) -> dict[int, str]:
+        """Class of every interactable object, by id."""
+        return {i: item.class_name for i, item in self._world.objects.items()}
+
+    @property
+    def said(self) -> tuple[str, ...]:
+        """What the body was told to say since the last reset."""
+        return tuple(self._said)
+
+    def _start(self) -> Body:
+        start = self._scene.agent
+        position = Vec3(*start.position, 0.0)
+        gaze = Vec3(*start.gaze)
+        return Body(position, math.radians(start.heading_deg), gaze)
+
+    def reset(self, seed: int) -> None:
+        """Put the world and the body back to their start.
+
+        The scene has no random part, so every seed gives the same world.
+        """
+        import mujoco
+
+        data = self._world.data
+        mujoco.mj_resetData(self._world.model, data)
+        data.qpos[:] = self._settled
+        mujoco.mj_forward(self._world.model, data)
+        self._body = self._start()
+        self._said = []
+
+    # --- perceive ---------------------------------------------------------------------------
+
+    def capture(self, width_px: int, height_px: int) -> Percept:
+        """See the room through the body's eyes."""
+        camera = self._body.camera(width_px, height_px)
+        return self.view(camera)
+
+    def view(self, camera: Camera) -> Percept:
+        """The world from any camera."""
+        if self._renderer is None:
+            self._renderer = SceneRenderer(self._world.model, self._world.object_of_geom)
+        data = self._world.data
+        rgb = self._renderer.color(data, camera)
+        layers = [self._renderer.ids(data, camera)]
+        if self._renderer.shows_glass(layers[0]):
+            layers.append(self._renderer.ids(data, camera, through_glass=True))
+        present = {int(i) for layer in layers for i in np.unique(layer)} - {NOTHING}
+        seen = {
+            i: SeenObject(i, self._world.objects[i].class_name, self._world.box(i))
+            for i in sorted(present)
+        }
+        return Percept(rgb, tuple(layers), seen, self._body.state(), camera)
+
+    def raycast(self, origin: Vec3, directions: Array) -> Sequence[Vec3 | None]:
+        """First hits of rays; the held object is ignored (the body has no geometry)."""
+        return physics.raycast(self._world, origin, directions, self._body.held)
+
+    def body(self) -> BodyState:
+        """The body now."""
+        return self._body.state()
+
+    # --- act --------------------------------------------------------------------------------
+
+    def look_at(self, point: Vec3) -> BodyReport:
+        """Turn body and gaze to a point."""
+        body, exact = self._body.facing(point)
+        self._move(body)
+        if exact:
+            return BodyReport(Outcome.DONE, Code.OK, body.gaze)
+        return BodyReport(Outcome.CORRECTED, Code.GAZE_LIMITED, body.gaze)
+
+    def walk_to(self, point: Vec3) -> BodyReport:
+        """Walk to the reachable place that is nearest to a point."""
+        path = self._floor().ways_from(self._body.position).to_nearest(point)
+        self._walk(path)
+        walked = path.length_m
+        if path.end.horizontal_distance(point) <= _AS_ASKED_M:
+            return BodyReport(Outcome.DONE, Code.OK, path.end, walked_m=walked)
+        return BodyReport(Outcome.CORRECTED, Code.STOPPED_SHORT, path.end, walked_m=walked)
+
+    def pick(self, object_id: int) -> BodyReport:
+        """Take an object into the hand, walking closer if needed."""
+        if self._body.held is not None:
+            return BodyReport(Outcome.REFUSED, Code.HAND_FULL)
+        target = self._world.box(object_id).center
+        keep_off = BODY_RADIUS_M if target.z < 1.75 else 0.0
+        path = self._way_to(target, keep_off)
+        if path is None:
+            return BodyReport(Outcome.REFUSED, Code.UNREACHABLE)
+        self._walk(path)
+        body, _ = self._body.facing(target)
+        self._body = Body(body.position, body.heading_rad, body.gaze, object_id)
+        self._carry()
+        physics.settle(self._world, object_id)
+        code = Code.REPOSITIONED if path.length_m > 0 else Code.OK
+        return BodyReport(Outcome.DONE, code, target, walked_m=path.length_m)
+
+    def drop(self, point: Vec3) -> BodyReport:
+        """Put the held object down at the free spot nearest to a point."""
+        held = self._body.held
+        if held is None:
+            return BodyReport(Outcome.REFUSED, Code.HAND_EMPTY)
+        shape = Solid.around(self._world.box(held))
+        spots = free_spots(point, shape, self._world.surfaces, self._obstacles(held))
+        if not spots:
+            return BodyReport(Outcome.REFUSED, Code.NO_FREE_SPOT)
+        chosen = self._reachable_spot(spots, math.hypot(shape.half_x, shape.half_y))
+        if chosen is None:
+            return BodyReport(Outcome.REFUSED, Code.UNREACHABLE)
+        spot, path = chosen
+        self._walk(path)
+        body, _ = self._body.facing(spot.center)
+        self._body = body
+        physics.place(self._world, held, spot.center + Vec3(0.0, 0.0, 0.001))
+        self._body = Body(body.position, body.heading_rad, body.gaze)
+        physics.settle(self._world, None)
+        rest = self._world.box(held).center
+        support = physics.supports(self._world, None)[held]
+        as_asked = (
+            spot.distance_m <= _AS_ASKED_M and rest.horizontal_distance(point) <= _AS_ASKED_M
+        )
+        if as_asked:
+            code = Code.REPOSITIONED if path.length_m > 0 else Code.OK
+            return BodyReport(Outcome.DONE, code, rest, support, path.length_m)
+        return BodyReport(Outcome.CORRECTED, Code.PLACED_ELSEWHERE, rest, support, path.length_m)
+
+    def say(self, text: str) -> None:
+        """Deliver the agent's final answer through the body."""
+        self._said.append(text)
+
+    # --- parts of the actions ---------------------------------------------------------------
+
+    def _solids_on(self, excluded: int | None) -> list[Solid]:
+        return [Solid.around(self._world.box(i)) for i in self._world.objects if i != excluded]
+
+    def _obstacles(self, held: int) -> list[Solid]:
+        return [*self._world.solids, *self._solids_on(held)]
+
+    def _floor(self) -> FloorMap:
+        low = [s for s in self._solids_on(self._body.held) if s.z_min < 0.3]
+        return FloorMap(self._info, [*self._world.solids, *low])
+
+    def _can_reach(self, place: Vec3, target: Vec3) -> bool:
+        """Whether no furniture is between the body at a place and a target."""
+        if target.z > REACH_TOP_M:
+            return False
+        for height in _SHOULDERS_M:
+            origin = Vec3(place.x, place.y, height)
+            if physics.line_is_free(self._world, origin, target):
+                return True
+        return False
+
+    def _way_to(self, target: Vec3, keep_off_m: float) -> Path | None:
+        """The shortest way to a place from which a target can be handled; stay if this is one."""
+        here = self._body.position
+        distance = here.horizontal_distance(target)
+        if keep_off_m <= distance <= REACH_M and self._can_reach(here, target):
+            return Path((here,))
+        ways = self._floor().ways_from(here)
+        return ways.to_standing_place(
+            target, REACH_M - _REACH_MARGIN_M, keep_off_m, lambda p: self._can_reach(p, target)
+        )
+
+    def _reachable_spot(self, spots: Sequence[Spot], radius_m: float) -> tuple[Spot, Path] | None:
+        for count, spot in enumerate(spread(spots)):
+            if count >= _MAX_SPOT_CHECKS:
+                return None
+            path = self._way_to(spot.center, BODY_RADIUS_M + radius_m + 0.01)
+            if path is not None:
+                return spot, path
+        return None
+
+    def _walk(self, path: Path) -> None:
+        if path.length_m <= 0:
+            return
+        before, end = path.points[-2], path.points[-1]
+        heading = math.atan2(end.y - before.y, end.x - before.x)
+        self._move(self._body.walked(end, heading))
+
+    def _move(self, body: Body) -> None:
+        self._body = body
+        self._carry()
+
+    def _carry(self) -> None:
+        """Bring the held object to the hand."""
+        import mujoco
+
+        if self._body.held is not None:
+            physics.place(self._world, self._body.held, self._body.hand)
+            mujoco.mj_forward(self._world.model, self._world.data)
+
+    # --- truth ------------------------------------------------------------------------------
+
+    def state(self) -> WorldState:
+        """The whole truth, as plain data."""
+        held = self._body.held
+        supports = physics.supports(self._world, held)
+        objects = tuple(
+            ObjectState(i, item.class_name, self._world.box(i), supports[i], i == held)
+            for i, item in self._world.objects.items()
+        )
+        return WorldState(self._info, objects, self._body.state())
+
+    def close(self) -> None:
+        """Free graphics memory."""
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None

@@ -1,0 +1,1 @@
+"""The virtual human: skeleton, skinned looks, and motion."""

@@ -1,0 +1,44 @@
+"""What holds for every test: no provider is ever called, and drawing leaves cores to the others."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import settings
+
+if TYPE_CHECKING:
+    from adamo.runtime.builtin import BuiltinEngine
+
+# Set before anything imports MuJoCo, and inherited by the subprocesses that tests start.
+os.environ["ADAMO_NO_REMOTE"] = "1"
+# One thread for each worker's software OpenGL: workers share few cores.
+os.environ.setdefault("LP_NUM_THREADS", "1")
+# Baked assets are built atomically, so all workers and all runs share one cache.
+os.environ.setdefault(
+    "ADAMO_CACHE_DIR", str(Path(__file__).resolve().parents[1] / ".cache" / "adamo-tests")
+)
+
+# How long an example takes says nothing on a machine that is shared.
+settings.register_profile("adamo", parent=settings(), deadline=None)
+settings.load_profile("adamo")
+
+
+@pytest.fixture(scope="session")
+def s1_engine() -> Iterator[BuiltinEngine]:
+    """One engine of scene S1 for all tests of a worker; use it through `engine`."""
+    from adamo.runtime.builtin import BuiltinEngine
+
+    made = BuiltinEngine("s1")
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def engine(s1_engine: BuiltinEngine) -> BuiltinEngine:
+    """Scene S1, just reset."""
+    s1_engine.reset(0)
+    return s1_engine

@@ -1,0 +1,72 @@
+"""The one frame: cameras, boxes and angles mean what the conventions say."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from adamo.geometry import Box, Camera, Quaternion, Vec3, wrap_angle
+
+angles = st.floats(-math.pi, math.pi)
+coordinates = st.floats(-5, 5)
+points = st.builds(Vec3, coordinates, coordinates, coordinates)
+
+
+def camera(yaw: float = 0.0, pitch: float = 0.0) -> Camera:
+    return Camera(Vec3(0, 0, 1.6), yaw, pitch, math.radians(65), 1920, 1080)
+
+
+def test_yaw_zero_looks_along_x_with_y_to_the_left_and_z_up() -> None:
+    u, v, depth = camera().project(np.array([[2.0, 0.5, 1.9]]))[0]
+    assert depth == pytest.approx(2.0)
+    assert u < 960
+    assert v < 540
+
+
+def test_yaw_ninety_degrees_looks_along_y() -> None:
+    u, v, depth = camera(math.pi / 2).project(np.array([[0.0, 3.0, 1.6]]))[0]
+    assert (u, v, depth) == pytest.approx((960, 540, 3.0))
+
+
+@given(angles, st.floats(-1.4, 1.4), st.floats(0, 1920), st.floats(0, 1080), st.floats(0.1, 20))
+def test_projection_undoes_rays(yaw: float, pitch: float, u: float, v: float, far: float) -> None:
+    view = camera(yaw, pitch)
+    ray = view.rays(np.array([[u, v]]))
+    assert np.linalg.norm(ray) == pytest.approx(1)
+    back = view.project(view.position.array() + far * ray)[0]
+    assert back[:2] == pytest.approx([u, v], abs=1e-6)
+    assert back[2] > 0
+
+
+@given(angles, st.floats(-1.4, 1.4), points)
+def test_intrinsics_and_pose_are_the_projection(yaw: float, pitch: float, point: Vec3) -> None:
+    view = camera(yaw, pitch)
+    local = view.world_from_camera.T @ (point - view.position).array()
+    if local[2] > 0.01:
+        pixel = view.intrinsics @ local / local[2]
+        assert view.project(point.array()[None])[0, :2] == pytest.approx(pixel[:2])
+
+
+@given(angles)
+def test_the_volume_and_size_of_a_box_do_not_change_when_it_turns(yaw: float) -> None:
+    box = Box(Vec3(1, 2, 3), Vec3(0.2, 0.1, 0.05), Quaternion.from_yaw(yaw))
+    assert box.volume_m3 == pytest.approx(0.001)
+    assert box.radius_m == pytest.approx(math.hypot(0.1, 0.05))
+    assert (box.bottom_z, box.top_z) == pytest.approx((2.975, 3.025))
+    assert box.orientation.yaw_rad == pytest.approx(yaw, abs=1e-9) or abs(yaw) == math.pi
+
+
+@given(st.floats(-100, 100))
+def test_wrapped_angles_are_the_same_direction(angle: float) -> None:
+    wrapped = wrap_angle(angle)
+    assert -math.pi < wrapped <= math.pi
+    assert math.cos(wrapped) == pytest.approx(math.cos(angle), abs=1e-9)
+    assert math.sin(wrapped) == pytest.approx(math.sin(angle), abs=1e-9)
+
+
+def test_rounded_points_have_no_negative_zero() -> None:
+    assert str(Vec3(-0.0004, 0, 0).rounded(2).x) == "0.0"
