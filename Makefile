@@ -42,18 +42,17 @@ format: $(VENV)/.dev ## Put the code in order: formatting, imports, safe fixes
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
 
-bench: $(VENV)/.package $(VENV)/.gl ## Measure speed; figures go to runs/bench/*.json
-	@mkdir -p runs/bench
+bench: $(VENV)/.package $(VENV)/.gl ## Measure speed; each script prints one JSON object
 	@for script in $$(grep -l -e '"--json"' benchmarks/*.py); do \
 		echo "==> $$script"; \
-		$(BIN)/python "$$script" --json "runs/bench/$$(basename "$$script" .py).json" || exit 1; \
+		$(BIN)/python "$$script" --json || exit 1; \
 	done
 
 venv: $(VENV)/.dev ## Only set up .venv, with the tools for tests and checks
 
 clean: ## Remove the environment, caches and demo runs; other runs stay
 	rm -rf $(VENV) .cache .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
-	rm -rf build dist $(DEMO) runs/bench
+	rm -rf build dist $(DEMO)
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The stamps remember what is set up; a change of the dependencies makes it again.

@@ -10,7 +10,6 @@ from adamo.action import Drop, Look, Pick, ToolSchema, Walk, tool_schema
 from adamo.geometry import Vec3, wrap_angle
 from adamo.inference.baseline import BaselineModel
 from adamo.inference.messages import (
-    AIMessage,
     HumanMessage,
     Message,
     SystemMessage,

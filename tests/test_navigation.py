@@ -18,9 +18,7 @@ ROOM = SceneInfo("room", -3, -5, 3, 3, 3.2, ())
 TABLE = Solid(-0.05, -1.0, 0.525, 0.83, 0.0, 0.0, 0.78)
 SOFA = Solid(-1.3, 1.1, 0.46, 1.32, math.radians(45), 0.0, 0.8)
 FLOOR = FloorMap(ROOM, [TABLE, SOFA])
-inside = st.builds(
-    Vec3, st.floats(-2.7, 2.7), st.floats(-4.7, 2.7), st.just(0.0)
-)
+inside = st.builds(Vec3, st.floats(-2.7, 2.7), st.floats(-4.7, 2.7), st.just(0.0))
 
 
 @given(inside, inside)

@@ -29,9 +29,7 @@ neighbours = st.lists(
 
 
 @given(st.floats(-0.6, 0.6), st.floats(-0.9, 0.9), angles, neighbours)
-def test_spots_are_clear_of_everything(
-    x: float, y: float, yaw: float, beside: list[Solid]
-) -> None:
+def test_spots_are_clear_of_everything(x: float, y: float, yaw: float, beside: list[Solid]) -> None:
     shape = cup(0, 0, yaw)
     spots = free_spots(Vec3(x, y, 0.78), shape, [TABLE, FLOOR], [TOP, *beside])
     distances = [spot.distance_m for spot in spots]

@@ -96,7 +96,7 @@ def test_a_scene_of_ones_own_loads_from_a_file(tmp_path: Path) -> None:
 )
 def test_wrong_files_name_the_field(before: str, after: str, part: str) -> None:
     assert before in MINIMAL
-    with pytest.raises(SceneError, match="mine.toml") as caught:
+    with pytest.raises(SceneError, match=r"mine\.toml") as caught:
         parse_scene(MINIMAL.replace(before, after, 1), "mine.toml")
     assert part in str(caught.value)
 

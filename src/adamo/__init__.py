@@ -1,9 +1,6 @@
 """ADAMO: a body in a 3D room for vision-language models, and the benchmark around it.
 
-    import adamo
-
-    result = adamo.run_episode("Put the plate on the floor", scene="s1", model="baseline")
-    print(result.answer, result.termination)
+One call runs an episode: `adamo.run_episode("Put the plate on the floor", model="baseline")`.
 """
 
 from __future__ import annotations

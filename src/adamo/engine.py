@@ -72,8 +72,8 @@ class ObjectState:
     class_name: str
     box: Box
     support: str | None
-    """Name of the furniture it rests on ("table", "shelf/top"), "floor", `object_support(id)`, or None
-    if held or in the air."""
+    """What it rests on: furniture ("table", "shelf/top"), "floor", or another object (see
+    `object_support`); None if held or in the air."""
     held: bool
 
 

@@ -95,9 +95,7 @@ class Quaternion:
     @property
     def yaw_rad(self) -> float:
         """Heading of the rotated X axis, in (-pi, pi]."""
-        return math.atan2(
-            2 * (self.w * self.z + self.x * self.y), 1 - 2 * (self.y**2 + self.z**2)
-        )
+        return math.atan2(2 * (self.w * self.z + self.x * self.y), 1 - 2 * (self.y**2 + self.z**2))
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,7 +52,7 @@ class Tool:
     action_type: type
     """Frozen dataclass: its name, docstring and fields are the tool schema."""
     execute: Callable[[ToolContext, Any], Feedback]
-    """Carries an action of this type out. May raise `InvalidActionError`, which becomes feedback."""
+    """Carries an action of this type out; an `InvalidActionError` from it becomes feedback."""
 
 
 def inside(context: ToolContext, x: float, y: float, z: float) -> Vec3:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -188,21 +187,16 @@ def summarise(
     )
 
 
-@cache
-def _codec(record_type: type[_T]) -> TypeAdapter[_T]:
-    return TypeAdapter(record_type)
-
-
-def to_json(record: Manifest | EpisodeResult | tuple[FinalObject, ...]) -> Any:
+def to_json(record: Manifest | EpisodeResult) -> Any:
     """A record as plain JSON data."""
-    return _codec(type(record)).dump_python(record, mode="json")
+    return TypeAdapter(type(record)).dump_python(record, mode="json")
 
 
 def write_record(folder: Path, name: str, record: Manifest | EpisodeResult) -> None:
     """Write a record into a run folder, whole or not at all."""
     folder.mkdir(parents=True, exist_ok=True)
     half = folder / f"{name}.part"
-    half.write_bytes(_codec(type(record)).dump_json(record, indent=1))
+    half.write_bytes(TypeAdapter(type(record)).dump_json(record, indent=1))
     half.replace(folder / name)
 
 
@@ -229,7 +223,7 @@ def _read(path: Path, record_type: type[_T]) -> _T:
     if not path.is_file():
         raise RecordError(f"{path.parent} is no run folder: {path.name} is missing.")
     try:
-        return _codec(record_type).validate_json(path.read_bytes())
+        return TypeAdapter(record_type).validate_json(path.read_bytes())
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])

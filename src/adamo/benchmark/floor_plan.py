@@ -95,7 +95,8 @@ def floor_plan(initial: WorldState, turns: Sequence[Turn], final: WorldState | N
         final: The world when it ended, if it did.
     """
     scene = initial.scene
-    states = [("start", initial.body), *((t.label, t.agent) for t in turns if t.agent)]
+    states: list[tuple[str, BodyState | AgentState]] = [("start", initial.body)]
+    states += [(turn.label, turn.agent) for turn in turns if turn.agent]
     way = [_plan(state.position) for _, state in states]
     return FloorPlan(
         x=scene.x_min,

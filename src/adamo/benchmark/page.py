@@ -24,6 +24,7 @@ from adamo.cognition.termination import TerminationReason
 from adamo.cognition.trajectory import FRAMES, Ended, Trajectory, read_trajectory
 from adamo.geometry import Vec3
 from adamo.inference.model import Usage
+from adamo.perception import Labeling
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -94,6 +95,7 @@ def render_page(
             turns=steps,
             plan=floor_plan(manifest.initial, steps, result.final if result else None),
             plan_margin=MARGIN_M,
+            named=_naming(manifest),
             picture=lambda name: _data_url(name, frames),
             style=style,
             script=script,
@@ -133,6 +135,15 @@ def _verdict(
             return "ended", "Answered", "The model ended the episode."
 
 
+def _naming(manifest: Manifest) -> Callable[[str], str]:
+    """Puts tags that people can read in place of the bare ids of a condition."""
+    names = {
+        str(item.id): Labeling.SEM.tag(item.id, item.class_name)
+        for item in manifest.initial.objects
+    }
+    return lambda text: re.sub(r"\b\d+\b", lambda found: names.get(found[0], found[0]), text)
+
+
 def _data_url(name: str, frames: Callable[[str], bytes]) -> str | None:
     match = _FRAME_NAME.fullmatch(name)
     if match is None:
@@ -166,7 +177,9 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(place=_place, degrees=_degrees, seconds=_seconds, thousands=_thousands)
+    environment.filters.update(
+        place=_place, degrees=_degrees, seconds=_seconds, thousands=_thousands
+    )
     return environment
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -22,11 +22,9 @@ Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text."
 @app.command()
 def run(
     instruction: Annotated[
-        Optional[str], typer.Argument(help="What the agent is told.", show_default=False)
+        str | None, typer.Argument(help="What the agent is told.", show_default=False)
     ] = None,
-    task: Annotated[
-        Optional[str], typer.Option(help="A benchmark task instead: T1 to T15.")
-    ] = None,
+    task: Annotated[str | None, typer.Option(help="A benchmark task instead: T1 to T15.")] = None,
     scene: Annotated[str, typer.Option(help="Built-in scene or scene file.")] = "s1",
     labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
     model: Annotated[
@@ -42,7 +40,7 @@ def run(
     text: Annotated[str, typer.Option(help="Symbolic text: full or paper.")] = "full",
     max_steps: Annotated[int, typer.Option(help="Step cap.")] = 60,
     out: Annotated[
-        Optional[Path], typer.Option(help="Run folder; a new one below runs/ by default.")
+        Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
     ] = None,
     json: Json = False,
 ) -> None:
@@ -95,7 +93,7 @@ def tasks(context: typer.Context, json: Json = False) -> None:
 
 @tasks_app.command("verify")
 def tasks_verify(
-    scene: Annotated[Optional[str], typer.Option(help="One scene; all by default.")] = None,
+    scene: Annotated[str | None, typer.Option(help="One scene; all by default.")] = None,
     json: Json = False,
 ) -> None:
     """Prove that the oracle solves every task and that doing nothing solves none."""

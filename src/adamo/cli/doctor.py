@@ -51,7 +51,7 @@ def examine(*, as_json: bool) -> None:
 def _findings() -> Iterator[Finding]:
     yield Finding("versions", True, _versions())
     yield _guarded("cache", _cache, "set ADAMO_CACHE_DIR to a folder that can be written")
-    yield _guarded("graphics", _graphics, "apt-get install libegl1 libgl1-mesa-dri")
+    yield _guarded("graphics", _graphics, "apt-get install libegl1 libopengl0 libgl1-mesa-dri")
     yield _guarded("test frame", _test_frame, "see the line above; then run adamo doctor again")
     set_keys = [key for key in _KEYS if os.environ.get(key)]
     yield Finding("keys", True, f"set: {', '.join(set_keys) or 'none (the baseline needs none)'}")

@@ -61,8 +61,10 @@ def replay_and_show(run_dir: Path, *, as_json: bool) -> None:
         found = {"steps": report.steps, "same": same, "mismatches": report.mismatches}
         typer.echo(json.dumps({**found, "frames_differ": report.frames_differ}))
     elif same:
-        frames = "all frames equal" if not report.frames_differ else (
-            f"{report.frames_differ} frames differ in bytes (another machine or driver)"
+        frames = (
+            "all frames equal"
+            if not report.frames_differ
+            else (f"{report.frames_differ} frames differ in bytes (another machine or driver)")
         )
         typer.echo(f"Same: {report.steps} actions, every state hash equal; {frames}.")
     else:

@@ -1,0 +1,1 @@
+"""The Cognitive Server: prompts, memory, and the loop of perceive, reason, act."""

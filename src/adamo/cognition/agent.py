@@ -109,9 +109,7 @@ class Agent:
         agent = result.agent if result else self._server.agent()
         digest = result.state_hash if result else self._server.state_hash()
         self._steps += 1
-        self._tell(
-            Acted(self._steps, call.name, call.arguments, feedback, agent, digest, seconds)
-        )
+        self._tell(Acted(self._steps, call.name, call.arguments, feedback, agent, digest, seconds))
         self._perceived(view)
 
     def _execute(self, call: ToolCall) -> tuple[Feedback, ActionResult | None]:

@@ -1,0 +1,1 @@
+"""The VLM Inference Server: any model behind one interface."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-import numpy as np
 
 from adamo.action import Code, Outcome
 from adamo.engine import BodyReport, ObjectState, SceneInfo, WorldState
 from adamo.geometry import Array, Camera, Vec3
-from adamo.observation import NOTHING, BodyState, Percept, SeenObject
+from adamo.observation import BodyState, Percept, SeenObject
 from adamo.runtime import physics
 from adamo.runtime.embodiment import REACH_M, REACH_TOP_M, Body
 from adamo.runtime.navigation import BODY_RADIUS_M, FloorMap, Path
@@ -19,6 +19,9 @@ from adamo.runtime.rendering import SceneRenderer
 from adamo.runtime.scenes.scene import Scene, load_scene
 from adamo.runtime.solids import Solid
 from adamo.runtime.world import World, build_world
+
+if TYPE_CHECKING:
+    import mujoco
 
 _AS_ASKED_M = 0.05
 """A body or an object that ends this close to the wish counts as done, not corrected."""
@@ -44,6 +47,7 @@ class BuiltinEngine:
         self._info = self._scene.info()
         self._world: World = build_world(self._scene)
         self._renderer: SceneRenderer | None = None
+        self._view: tuple[object, Percept] | None = None
         self._said: list[str] = []
         physics.settle(self._world, None)
         self._settled = self._world.data.qpos.copy()
@@ -92,20 +96,38 @@ class BuiltinEngine:
         return self.view(camera)
 
     def view(self, camera: Camera) -> Percept:
-        """The world from any camera."""
-        if self._renderer is None:
-            self._renderer = SceneRenderer(self._world.model, self._world.object_of_geom)
+        """The world from any camera. An unchanged view is not drawn twice."""
         data = self._world.data
-        rgb = self._renderer.color(data, camera)
-        layers = [self._renderer.ids(data, camera)]
-        if self._renderer.shows_glass(layers[0]):
-            layers.append(self._renderer.ids(data, camera, through_glass=True))
-        present = {int(i) for layer in layers for i in np.unique(layer)} - {NOTHING}
+        key = (camera, self._body, data.qpos.tobytes())
+        if self._view is not None and self._view[0] == key:
+            return self._view[1]
+        rgb = self.renderer.color(data, camera)
+        layers = self.renderer.layers(data, camera)
+        present = frozenset[int]().union(*(layer.present for layer in layers))
         seen = {
             i: SeenObject(i, self._world.objects[i].class_name, self._world.box(i))
             for i in sorted(present)
         }
-        return Percept(rgb, tuple(layers), seen, self._body.state(), camera)
+        id_layers = tuple(layer.ids for layer in layers)
+        percept = Percept(rgb, id_layers, seen, self._body.state(), camera)
+        self._view = (key, percept)
+        return percept
+
+    def forget_view(self) -> None:
+        """Draw the next view even if nothing changed (for measuring)."""
+        self._view = None
+
+    @property
+    def renderer(self) -> SceneRenderer:
+        """What draws the world; opened when it is first needed."""
+        if self._renderer is None:
+            self._renderer = SceneRenderer(self._world.model, self._world.object_of_geom)
+        return self._renderer
+
+    @property
+    def data(self) -> mujoco.MjData:
+        """The MuJoCo state, for measuring and for own views."""
+        return self._world.data
 
     def raycast(self, origin: Vec3, directions: Array) -> Sequence[Vec3 | None]:
         """First hits of rays; the held object is ignored (the body has no geometry)."""
@@ -172,9 +194,7 @@ class BuiltinEngine:
         physics.settle(self._world, None)
         rest = self._world.box(held).center
         support = physics.supports(self._world, None)[held]
-        as_asked = (
-            spot.distance_m <= _AS_ASKED_M and rest.horizontal_distance(point) <= _AS_ASKED_M
-        )
+        as_asked = spot.distance_m <= _AS_ASKED_M and rest.horizontal_distance(point) <= _AS_ASKED_M
         if as_asked:
             code = Code.REPOSITIONED if path.length_m > 0 else Code.OK
             return BodyReport(Outcome.DONE, code, rest, support, path.length_m)
@@ -262,3 +282,4 @@ class BuiltinEngine:
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
+            self._view = None

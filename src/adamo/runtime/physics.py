@@ -83,9 +83,7 @@ def _is_still(world: World) -> bool:
     )
 
 
-def _undo_creep(
-    data: mujoco.MjData, item: WorldObject, before: Array
-) -> None:
+def _undo_creep(data: mujoco.MjData, item: WorldObject, before: Array) -> None:
     pose = slice(item.qpos, item.qpos + 7)
     moved = np.abs(data.qpos[pose] - before[pose])
     if np.linalg.norm(moved[:3]) < _CREEP_M and moved[3:].max() < _CREEP_QUATERNION:
@@ -104,7 +102,8 @@ def supports(world: World, held: int | None) -> dict[int, str | None]:
 
     Returns:
         By object id: a piece of furniture (with its level, if it has several), "floor", the
-        support name of another object, or None for what is held or in the air. Furniture goes before objects.
+        support name of another object, or None for what is held or in the air. Furniture goes
+        before objects.
     """
     carriers: dict[int, set[str]] = {i: set() for i in world.objects}
     for contact in world.data.contact[: world.data.ncon]:

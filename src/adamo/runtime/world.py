@@ -14,7 +14,6 @@ from adamo.geometry import Box, Quaternion, Vec3
 from adamo.observation import NOTHING
 from adamo.runtime.assets.asset import Asset, Collider
 from adamo.runtime.embodiment import FOV_Y_RAD
-from adamo.runtime.rendering import MSAA_SAMPLES, SHADOW_MAP_PX
 from adamo.runtime.scenes.scene import Furniture, Light, PlacedObject, Scene
 from adamo.runtime.solids import Solid
 
@@ -162,8 +161,6 @@ def _empty_spec() -> mujoco.MjSpec:
     spec.visual.global_.fovy = math.degrees(FOV_Y_RAD)
     spec.visual.global_.offwidth = 1920
     spec.visual.global_.offheight = 1080
-    spec.visual.quality.offsamples = MSAA_SAMPLES
-    spec.visual.quality.shadowsize = SHADOW_MAP_PX
     spec.visual.headlight.ambient = [0.36, 0.355, 0.35]
     spec.visual.headlight.diffuse = [0.12, 0.12, 0.12]
     spec.visual.headlight.specular = [0.0, 0.0, 0.0]

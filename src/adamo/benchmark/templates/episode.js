@@ -18,7 +18,6 @@
     const copy = new Image();
     copy.src = source.src;
     copy.alt = "";
-    copy.decoding = "async";
     link.prepend(copy);
   }
 
@@ -66,13 +65,14 @@
     copy.removeAttribute("id");
     stage.replaceChildren(copy);
     stage.className = `stage ${button.dataset.zoom}`;
-    caption.textContent = button.closest("figure").querySelector("figcaption").textContent;
+    const words = button.closest("figure").querySelector("figcaption").cloneNode(true);
+    caption.replaceChildren(...words.childNodes);
     if (!box.open) box.showModal();
   }
 
   function step(by) {
     go(active + by);
-    if (!box.open || stage.classList.contains("plan")) return;
+    if (!box.open || stage.classList.contains("map")) return;
     const link = turns[active].querySelector("[data-picture]");
     const holder = link ? document.getElementById(link.dataset.picture) : turns[active];
     const button = holder && holder.querySelector(".zoom");
@@ -91,7 +91,7 @@
   }
   box.addEventListener("click", (event) => {
     // A click on the picture shows its pixels one to one; anywhere else closes.
-    if (event.target.closest(".frame img")) stage.classList.toggle("full");
+    if (event.target.closest(".view img")) stage.classList.toggle("full");
     else if (!event.target.closest("svg")) box.close();
   });
   document.addEventListener("keydown", (event) => {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from adamo.inference.baseline.goals import Goal, Plan, Relation
-from adamo.inference.baseline.memory import Memory, Status
+from adamo.inference.baseline.memory import Job, Memory, Status
 
 
 def final_answer(plan: Plan, memory: Memory) -> str:
@@ -17,8 +17,8 @@ def final_answer(plan: Plan, memory: Memory) -> str:
     missed: list[str] = []
     for index, goal in enumerate(plan.goals):
         jobs = [job for job in memory.jobs if job.goal == index]
-        good = [job.tag for job in jobs if job.status is Status.DONE]
-        bad = [job.tag for job in jobs if job.status is not Status.DONE]
+        good = [_named(goal, job) for job in jobs if job.status is Status.DONE]
+        bad = [_named(goal, job) for job in jobs if job.status is not Status.DONE]
         if good:
             done.append(f"{_and(good)} {'is' if len(good) == 1 else 'are'} {_place(goal)}")
         if bad:
@@ -30,6 +30,11 @@ def final_answer(plan: Plan, memory: Memory) -> str:
     if not done:
         return f"Not done: {'; '.join(missed)}."
     return f"Partly done: {'; '.join(done)}. Not done: {'; '.join(missed)}."
+
+
+def _named(goal: Goal, job: Job) -> str:
+    """A thing as the user called it, with its tag."""
+    return job.tag if goal.target.every else f"{goal.target.text} ({job.tag})"
 
 
 def _why(goal: Goal, index: int, memory: Memory) -> str:

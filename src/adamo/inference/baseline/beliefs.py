@@ -11,7 +11,7 @@ from adamo.inference.baseline.grounding import degree, remembered
 from adamo.inference.baseline.memory import Job, Memory, Slot, Status, Thing, read
 from adamo.inference.baseline.placing import place_reached
 from adamo.inference.baseline.prototypes import class_of
-from adamo.inference.baseline.reading import Event, Prompt
+from adamo.inference.baseline.reading import Event, Listed, Prompt
 from adamo.inference.baseline.sight import Sight
 from adamo.inference.baseline.vision import sights
 
@@ -52,16 +52,28 @@ def _see(prompt: Prompt, plan: Plan, memory: Memory) -> None:
     looked_at = _sights(prompt, plan)
     for thing in memory.things.values():
         memory.things[thing.tag] = replace(thing, moved=False)
+    before = dict(memory.things)
     for listed in prompt.things:
-        memory.things[listed.tag] = remembered(listed, looked_at.get(listed.tag))
+        memory.things[listed.tag] = _seen(prompt, listed, looked_at.get(listed.tag), before)
     everything = tuple(memory.things.values())
     for slot, description in slots(plan):
         fits = memory.fits.setdefault(slot, {})
         for listed in prompt.things:
-            fit = degree(
-                description, memory.things[listed.tag], looked_at.get(listed.tag), everything
-            )
-            fits[listed.tag] = max(fit, fits.get(listed.tag, 0.0))
+            tag = listed.tag
+            fit = degree(description, memory.things[tag], looked_at.get(tag), everything)
+            closer = tag not in before or memory.things[tag].seen_m < 0.9 * before[tag].seen_m
+            # The nearest view is believed; of equally near ones, the most favourable.
+            fits[tag] = fit if closer else max(fit, fits.get(tag, 0.0))
+
+
+def _seen(
+    prompt: Prompt, listed: Listed, sight: Sight | None, before: Mapping[str, Thing]
+) -> Thing:
+    thing = remembered(listed, sight)
+    distance = round(listed.position.horizontal_distance(prompt.body.position), 1)
+    if known := before.get(listed.tag):
+        distance = min(distance, known.seen_m)
+    return replace(thing, seen_m=distance)
 
 
 def _keep(prompt: Prompt, memory: Memory) -> None:

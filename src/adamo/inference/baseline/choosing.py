@@ -5,33 +5,34 @@ from __future__ import annotations
 from adamo.inference.baseline.beliefs import anchor_of
 from adamo.inference.baseline.goals import Description, Goal, Size
 from adamo.inference.baseline.memory import Memory, Thing
-from adamo.inference.baseline.searching import SURVEY
+from adamo.inference.baseline.searching import Stage
 
 _SURE, _LIKELY, _AT_ALL = 0.5, 0.3, 0.12
 _MEMBER = 0.5
 """A thing that fits at least so well belongs to a group."""
 
 
-def needed_fit(views: int, over: bool) -> float:
-    """How well one thing must fit to be taken: less after having looked round."""
-    if over:
+def needed_fit(stage: Stage) -> float:
+    """How well one thing must fit to be taken: less the more was searched."""
+    if stage is Stage.OVER:
         return _AT_ALL
-    return _LIKELY if views >= SURVEY else _SURE
+    return _LIKELY if stage is Stage.CLOSE else _SURE
 
 
-def targets(goal: Goal, index: int, memory: Memory, over: bool) -> list[str] | None:
+def targets(goal: Goal, index: int, memory: Memory, stage: Stage) -> list[str] | None:
     """The things that a goal is about.
 
     Args:
         goal: The goal.
         index: Its place in the plan.
         memory: How well things fit.
-        over: Whether the search has ended.
+        stage: How far the search is.
 
     Returns:
         Tags; None if it takes more looking round to tell.
     """
-    if goal.target.compares and not goal.target.ids and memory.views < SURVEY:
+    over = stage is Stage.OVER
+    if goal.target.compares and not goal.target.ids and stage < Stage.CLOSE:
         return None
     fits = memory.fits.get(("goal", index), {})
     taken = {j.tag for j in memory.jobs if j.goal < index} if _is_single_class(goal) else set()
@@ -48,18 +49,18 @@ def targets(goal: Goal, index: int, memory: Memory, over: bool) -> list[str] | N
     if not free:
         return [] if over else None
     fit, tag = max((f, _nearness(t, memory), t) for t, f in free.items())[::2]
-    return [tag] if fit >= needed_fit(memory.views, over) else ([] if over else None)
+    return [tag] if fit >= needed_fit(stage) else ([] if over else None)
 
 
-def anchor(goal: Goal, index: int, memory: Memory, over: bool) -> Thing | None:
+def anchor(goal: Goal, index: int, memory: Memory, stage: Stage) -> Thing | None:
     """The thing to be near, if some thing fits well enough by now."""
     if goal.anchor is None:
         return None
     thing = _extreme_anchor(goal, index, memory) if goal.anchor.size else anchor_of(index, memory)
-    if thing is None or (goal.anchor.size and memory.views < SURVEY):
+    if thing is None or (goal.anchor.size and stage < Stage.CLOSE):
         return None
     fit = memory.fits[("place", index)].get(thing.tag, 0.0)
-    return thing if fit >= needed_fit(memory.views, over) else None
+    return thing if fit >= needed_fit(stage) else None
 
 
 def _extreme_anchor(goal: Goal, index: int, memory: Memory) -> Thing | None:

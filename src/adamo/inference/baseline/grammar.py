@@ -118,7 +118,8 @@ def _clause(cursor: Cursor, reading: _Reading) -> None:
         reading.put(_things(cursor, reading), place)
     elif starts_phrase(cursor) or cursor.peek() is Kind.PRONOUN:
         things = _things(cursor, reading)
-        if not cursor.accept(Kind.GOES) and cursor.peek() not in _PLACES:
+        cursor.accept(Kind.GOES)
+        if cursor.peek() not in _PLACES:
             raise cursor.fail("I expected a verb like 'pick' or 'put' before it")
         reading.put(things, _place(cursor, reading))
     else:
@@ -154,7 +155,7 @@ def _verb_clause(verb: Kind, cursor: Cursor, reading: _Reading) -> None:
 
 
 def _further_pairs(cursor: Cursor, reading: _Reading) -> None:
-    """ "... and the cup next to the plate": the same verb goes on."""
+    """Read "... and the cup next to the plate": the same verb goes on."""
     while cursor.peek() in _BREAKS:
         mark = cursor.mark()
         while cursor.accept(*_BREAKS):
@@ -210,7 +211,7 @@ def _things(cursor: Cursor, reading: _Reading) -> list[Description]:
 
 
 def _repeated(cursor: Cursor, reading: _Reading) -> list[Description]:
-    """ "these objects", "the two items", "the object": what was taken, named by a plain noun."""
+    """Read "these objects", "the two items", "the object": what was taken, by a plain noun."""
     group = list(reading.waiting or reading.last)
     mark = cursor.mark()
     while cursor.accept(Kind.DET, Kind.EVERY, Kind.COUNT, Kind.OF):
@@ -258,38 +259,49 @@ def _join(cursor: Cursor, one: _Place, other: _Place) -> _Place:
 
 
 def _target_place(cursor: Cursor, preposition: Kind) -> _Place:
+    mark = cursor.mark()
     while cursor.accept(Kind.DET, Kind.COUNT, Kind.ON, Kind.IN):
         pass
-    if cursor.peek() is Kind.OBJECT and cursor.peek(1) is Kind.OF:  # "one of the corners"
-        cursor.next()
-        cursor.next()
-    while cursor.accept(Kind.DET, Kind.COUNT):
-        pass
-    if cursor.peek(1) in (Kind.CORNER, Kind.ROOM):
-        cursor.accept(Kind.NEAREST)
-    if preposition in (Kind.TO, Kind.ON, Kind.IN) and cursor.peek() is Kind.NEAR:
-        cursor.next()  # "to beside the plate"
-        preposition = Kind.NEAR
-    if cursor.peek() is Kind.ROOM and cursor.peek(1) is Kind.CORNER:
-        cursor.next()
-    if cursor.accept(Kind.CORNER):
-        if cursor.peek() is Kind.OF:
-            cursor.next()
-            while cursor.accept(Kind.DET):
-                pass
-            if not cursor.accept(Kind.ROOM, Kind.FLOOR):
-                raise cursor.fail("I know the corners of the room")
-        return _Place(Relation.CORNER)
-    if cursor.accept(Kind.FLOOR):
-        if cursor.accept(Kind.OF):
-            cursor.accept(Kind.DET)
-            cursor.accept(Kind.ROOM)
-        cursor.accept(Kind.PART)
-        return _Place(Relation.FLOOR)
+    if preposition is not Kind.NEAR and cursor.accept(Kind.NEAR):  # "to beside the plate"
+        preposition, mark = Kind.NEAR, cursor.mark()
+    if place := _corner(cursor) or _floor(cursor):
+        return place
     if furniture := cursor.accept(Kind.FURNITURE):
         return _Place(Relation.SURFACE, furniture=furniture.text)
     if preposition not in (Kind.NEAR, Kind.TO):
         raise cursor.fail("things go on the floor, on furniture or near another thing")
-    if preposition is Kind.NEAR and cursor.peek() is Kind.PRONOUN:
+    if cursor.peek() is Kind.PRONOUN:
         raise cursor.fail("near what?")
+    cursor.rewind(mark)
+    while cursor.accept(Kind.ON, Kind.IN):
+        pass
     return _Place(Relation.NEAR, noun_phrase(cursor))
+
+
+def _corner(cursor: Cursor) -> _Place | None:
+    """Read "a corner", "one of the nearest room corners", "the corner of the room"."""
+    mark = cursor.mark()
+    if cursor.peek() is Kind.OBJECT and cursor.peek(1) is Kind.OF:
+        cursor.next()
+        cursor.next()
+    while cursor.accept(Kind.DET, Kind.COUNT, Kind.NEAREST, Kind.ROOM):
+        pass
+    if not cursor.accept(Kind.CORNER):
+        cursor.rewind(mark)
+        return None
+    if cursor.accept(Kind.OF):
+        cursor.accept(Kind.DET)
+        if not cursor.accept(Kind.ROOM, Kind.FLOOR):
+            raise cursor.fail("I know the corners of the room")
+    return _Place(Relation.CORNER)
+
+
+def _floor(cursor: Cursor) -> _Place | None:
+    """Read "floor", "floor of the room", "floor area"."""
+    if not cursor.accept(Kind.FLOOR):
+        return None
+    if cursor.accept(Kind.OF):
+        cursor.accept(Kind.DET)
+        cursor.accept(Kind.ROOM)
+    cursor.accept(Kind.PART)
+    return _Place(Relation.FLOOR)

@@ -143,13 +143,15 @@ _PHRASES: dict[Kind, str] = {
     Kind.SKIP: "please|kindly|could you|can you|would you|will you|could you please|"
     "can you please|would you please|i would like you to|i'd like you to|i want you to|"
     "i need you to|for me|now|just|first|firstly|go|go and|walk|down|up|over|here|"
-    "carefully|gently|safely|slowly|quickly|thanks|thank you|hey|hi|hello|adamo|ok|okay|let us|"
+    "carefully|gently|safely|slowly|"
+    "quickly|thanks|thank you|hey|hi|hello|adamo|ok|okay|let us|"
     "let's|you|your task is to|your job is to|try to|start by|somewhere|anywhere|directly|right|"
     "exactly|simply|you should|you must|you have to|you need to|back|there is|sir|so|together|"
     "would you mind|do me a favor and|do me a favour and|be so kind as to|would you be so kind to|"
     "task|i ask you to|we need you to|we want you to|must|should|if possible|"
     "in your hand|in the hand|with your hand|to your hand|into your hand|go to|begin by|by hand|"
-    "in order|coloured|colored|your goal is to|away|along|only|each time|one by one|one after another|"
+    "in order|coloured|colored|your goal is to|away|along|only|each time|one by one|"
+    "one after another|"
     "one after the other|immediately|straight|free|empty|available|a free spot|"
     "well|nicely|proceed to|continue to|go ahead and|a bit|very|respectively|"
     "that you can find|that you find|you can find|you can see|that you can see|you see|you find|"
@@ -233,12 +235,11 @@ _VALUED: dict[Kind, dict[str, str]] = {
     },
 }
 
-PLURALS = frozenset(
-    "objects items things articles ones stuff products locks padlocks batteries flashlights torches "
-    "tapes screwdrivers cans tins medicines keys bottles glasses tumblers cups mugs plants plates "
-    "dishes lighters corners belongings".split()
+_PLURAL_NOUNS = (
+    "objects|items|things|articles|ones|stuff|products|locks|padlocks|batteries|flashlights|"
+    "torches|tapes|screwdrivers|cans|tins|medicines|keys|bottles|glasses|tumblers|cups|mugs|"
+    "plants|plates|dishes|lighters|corners|belongings"
 )
-"""Nouns that mean several things; "pills" or "binoculars" are one."""
 
 _WORD = re.compile(r"[a-z]+_\d+|#?\d+|[a-z]+(?:'[a-z]+)?|[,.;:!?&]")
 
@@ -259,6 +260,13 @@ def _table() -> dict[str, tuple[Kind, str]]:
 @cache
 def _longest() -> int:
     return max(len(phrase.split()) for phrase in _table())
+
+
+def is_plural(token: Token) -> bool:
+    """Whether a noun means several things; "pills" or "field glasses" are one."""
+    return token.value != "Binoculars" and any(
+        word in _PLURAL_NOUNS.split("|") for word in token.text.split()
+    )
 
 
 def class_words() -> dict[str, str]:

@@ -18,7 +18,7 @@ _JOB = re.compile(r"goal (\d+): (\S+) (\w+)(?: \(tries (\d+)\))?")
 _FIT = re.compile(r"(goal|place) (\d+) = ((?:\S+ [\d.]+(?:, )?)+)")
 _THING = re.compile(
     r"(\S+) at \((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\), ([\d.]+) cm3, "
-    r"([\d.]+) m wide, ([\d.]+) m high( \(moved\))?"
+    r"([\d.]+) m wide, ([\d.]+) m high, seen from ([\d.]+) m( \(moved\))?"
 )
 _KEPT_FITS = 6
 _LEAST_FIT = 0.08
@@ -55,6 +55,8 @@ class Thing:
     width_m: float
     """Largest horizontal extent, estimated."""
     height_m: float
+    seen_m: float = 0.0
+    """From how near it was looked at, metres."""
     moved: bool = False
     """Put there by the own hand after the last frame."""
 
@@ -79,6 +81,10 @@ class Memory:
 
     views: int = 0
     """How many steps of the search were made."""
+    visits: int = 0
+    """How many steps were made to see far things from nearby."""
+    aside: int = 0
+    """How often something was put aside to empty the hand."""
     hand: str = ""
     """Tag in the hand, as far as known; empty for none."""
     jobs: list[Job] = field(default_factory=list)
@@ -109,6 +115,10 @@ def write(memory: Memory, told: Iterable[str], groups: Iterable[int]) -> str:
     """
     listed, compared = set(told), set(groups)
     parts = [f"looked {memory.views} times", f"hand {memory.hand or 'empty'}"]
+    if memory.visits:
+        parts.append(f"went closer {memory.visits} times")
+    if memory.aside:
+        parts.append(f"put aside {memory.aside} times")
     for job in memory.jobs:
         tries = f" (tries {job.tries})" if job.tries else ""
         parts.append(f"goal {job.goal + 1}: {job.tag} {job.status}{tries}")
@@ -123,8 +133,8 @@ def write(memory: Memory, told: Iterable[str], groups: Iterable[int]) -> str:
             p = thing.position
             parts.append(
                 f"{tag} at ({p.x:.3f}, {p.y:.3f}, {p.z:.3f}), {thing.volume_cm3:.1f} cm3, "
-                f"{thing.width_m:.3f} m wide, {thing.height_m:.3f} m high"
-                + (" (moved)" if thing.moved else "")
+                f"{thing.width_m:.3f} m wide, {thing.height_m:.3f} m high, "
+                f"seen from {thing.seen_m:.1f} m" + (" (moved)" if thing.moved else "")
             )
     return f"{_TITLE} " + "; ".join(parts) + "."
 
@@ -142,6 +152,10 @@ def read(note: str) -> Memory:
 def _read_part(part: str, memory: Memory) -> None:
     if found := re.fullmatch(r"looked (\d+) times", part):
         memory.views = int(found.group(1))
+    elif found := re.fullmatch(r"went closer (\d+) times", part):
+        memory.visits = int(found.group(1))
+    elif found := re.fullmatch(r"put aside (\d+) times", part):
+        memory.aside = int(found.group(1))
     elif found := re.fullmatch(r"hand (\S+)", part):
         memory.hand = "" if found.group(1) == "empty" else found.group(1)
     elif (found := _JOB.fullmatch(part)) and found.group(3) in set(Status):
@@ -152,12 +166,13 @@ def _read_part(part: str, memory: Memory) -> None:
         pairs = (pair.split(" ") for pair in fits.split(", "))
         memory.fits[(kind, int(goal) - 1)] = {tag: float(fit) for tag, fit in pairs}
     elif found := _THING.fullmatch(part):
-        tag, x, y, z, volume, width, height, moved = found.groups()
+        tag, x, y, z, volume, width, height, seen, moved = found.groups()
         memory.things[tag] = Thing(
             tag,
             Vec3(float(x), float(y), float(z)),
             float(volume),
             float(width),
             float(height),
+            float(seen),
             bool(moved),
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from adamo.inference.baseline.goals import Description, Relation, Size
-from adamo.inference.baseline.lexicon import PLURALS, Kind, Token
+from adamo.inference.baseline.lexicon import Kind, Token, is_plural
 
 _BEFORE_NOUN = frozenset(
     {Kind.DET, Kind.EVERY, Kind.COUNT, Kind.COLOUR, Kind.SHAPE, Kind.GLASSY, Kind.SIZE}
@@ -133,12 +133,7 @@ def noun_phrase(cursor: Cursor) -> Description:
 
 
 def _before_noun(cursor: Cursor, draft: _Draft) -> None:
-    while cursor.peek() in _BEFORE_NOUN or cursor.peek() in (Kind.OF, Kind.COMMA, Kind.AND):
-        if cursor.peek() is Kind.OF:
-            if draft.says_something() and cursor.peek(1) in _STARTERS:
-                cursor.next()
-                continue
-            return
+    while cursor.peek() in _BEFORE_NOUN or cursor.peek() in (Kind.COMMA, Kind.AND):
         if cursor.peek() in (Kind.COMMA, Kind.AND):
             adjectives = (Kind.COLOUR, Kind.SHAPE, Kind.GLASSY)
             if (draft.colours or draft.shapes) and cursor.peek(1) in adjectives:
@@ -178,7 +173,7 @@ def _noun(cursor: Cursor, draft: _Draft) -> bool:
             draft.label = True
         else:
             draft.generic = True
-        if any(word in PLURALS for word in token.text.split()):
+        if is_plural(token):
             draft.plural = True
             draft.every = draft.every or not draft.count
     return found
@@ -196,7 +191,7 @@ def _after_noun(cursor: Cursor, draft: _Draft) -> bool:
 
 
 def _id(cursor: Cursor, draft: _Draft) -> bool:
-    """ "tagged as 34", "number 34", "34 and 35", "called plate"."""
+    """Read "tagged as 34", "number 34", "34 and 35", "called plate"."""
     cursor.accept(Kind.THAT)
     marked = False
     while cursor.accept(Kind.TAGGED, Kind.BE):
@@ -215,7 +210,7 @@ def _id(cursor: Cursor, draft: _Draft) -> bool:
 
 
 def _of(cursor: Cursor, draft: _Draft) -> bool:
-    """ "the smallest of the locks", "of all", "of red colour"."""
+    """Read "the smallest of the locks", "of all", "of red colour"."""
     if not cursor.accept(Kind.OF):
         return False
     if cursor.peek() is Kind.COLOUR:
@@ -235,7 +230,7 @@ def _of(cursor: Cursor, draft: _Draft) -> bool:
 
 
 def _location(cursor: Cursor, draft: _Draft) -> bool:
-    """ "that is on the floor", "standing near the plate", "from the table": where it is now."""
+    """Read "that is on the floor", "standing near the plate", "from the table": where it is now."""
     cursor.accept(Kind.THAT)
     is_now = cursor.accept(Kind.BE)
     word = cursor.accept(Kind.FROM) or (
@@ -258,7 +253,7 @@ def _location(cursor: Cursor, draft: _Draft) -> bool:
 
 
 def _being(cursor: Cursor, draft: _Draft) -> bool:
-    """ "that is blue and round", "which are the smallest"."""
+    """Read "that is blue and round", "which are the smallest"."""
     cursor.accept(Kind.THAT)
     if not cursor.accept(Kind.BE, Kind.IN):
         return False
@@ -284,7 +279,7 @@ def _being(cursor: Cursor, draft: _Draft) -> bool:
 
 
 def _having(cursor: Cursor, draft: _Draft) -> bool:
-    """ "with white parts", "that have a printed label", "with the smallest volume"."""
+    """Read "with white parts", "that have a printed label", "with the smallest volume"."""
     cursor.accept(Kind.THAT)
     if not cursor.accept(Kind.WITH):
         return False
@@ -316,7 +311,7 @@ def _possession(cursor: Cursor, draft: _Draft) -> bool:
 
 
 def _text(cursor: Cursor, draft: _Draft) -> bool:
-    """ "a printed label", "labelled TOMATO SOUP"."""
+    """Read "a printed label", "labelled TOMATO SOUP"."""
     if not cursor.accept(Kind.LABEL):
         return False
     while cursor.accept(Kind.LABEL, Kind.BE, Kind.DET):

@@ -12,6 +12,9 @@ from adamo.inference.baseline.goals import Goal, Plan, Relation
 from adamo.inference.baseline.memory import Job, Memory, Status, Thing, write
 from adamo.inference.baseline.reading import Prompt
 
+_MAX_ASIDE = 4
+"""Tries to empty the hand in an episode, after which it stays as it is."""
+
 
 @dataclass(frozen=True, slots=True)
 class Step:
@@ -46,8 +49,9 @@ def decide(prompt: Prompt, plan: Plan) -> Step:
     move = _next_move(prompt, plan, memory)
     if move is None:
         return Step(final_answer(plan, memory))
-    # A look replaces the list, so all that it tells must be in the note.
-    told = () if move.name == "Look" else tuple(thing.tag for thing in prompt.things)
+    # A look replaces the list, and a walk changes how near things were seen from: then the note
+    # must hold all that the list tells.
+    told = () if move.name in ("Look", "Walk") else tuple(thing.tag for thing in prompt.things)
     note = (
         f"Evidence: {_evidence(prompt, memory)}\n"
         f"Conclusion: {move.conclusion}\n"
@@ -67,11 +71,11 @@ def _groups(plan: Plan) -> list[int]:
 
 def _next_move(prompt: Prompt, plan: Plan, memory: Memory) -> _Move | None:
     """The first step that brings an open goal on; None when all are done or given up."""
-    searching_over = searching.is_over(prompt.room, memory.views)
+    stage = searching.stage(prompt, memory)
     order = sorted(range(len(plan.goals)), key=lambda i: plan.goals[i].relation is Relation.HOLD)
     for index in order:
         goal = plan.goals[index]
-        move = _resolve(prompt, goal, index, memory, searching_over)
+        move = _resolve(prompt, goal, index, memory, stage)
         if move:
             return move
         for job in [j for j in memory.jobs if j.goal == index and j.status is Status.TODO]:
@@ -81,17 +85,19 @@ def _next_move(prompt: Prompt, plan: Plan, memory: Memory) -> _Move | None:
     return _let_go(prompt, plan, memory)
 
 
-def _resolve(prompt: Prompt, goal: Goal, index: int, memory: Memory, over: bool) -> _Move | None:
+def _resolve(
+    prompt: Prompt, goal: Goal, index: int, memory: Memory, stage: searching.Stage
+) -> _Move | None:
     """Find out which things a goal is about; the step is one of the search, if that is needed."""
     if any(job.goal == index for job in memory.jobs):
         return None
-    tags = choosing.targets(goal, index, memory, over)
+    tags = choosing.targets(goal, index, memory, stage)
     if tags is None:
         return _search(prompt, memory, goal.target.text)
     if goal.anchor and tags and goal.relation is Relation.NEAR:
         others = [Job(index, tag) for tag in tags]
-        beside = choosing.anchor(goal, index, _with(memory, others), over)
-        if beside is None and not over:
+        beside = choosing.anchor(goal, index, _with(memory, others), stage)
+        if beside is None and stage is not searching.Stage.OVER:
             return _search(prompt, memory, goal.anchor.text)
         if beside is None:
             others = [replace(job, status=Status.FAILED) for job in others]
@@ -107,8 +113,7 @@ def _with(memory: Memory, jobs: list[Job]) -> Memory:
 
 
 def _search(prompt: Prompt, memory: Memory, wanted: str) -> _Move:
-    name, point = searching.next_step(prompt, memory.views)
-    memory.views += 1
+    name, point = searching.next_step(prompt, memory)
     why = f"I do not know enough yet to tell which thing is '{wanted}'; I must look round."
     verb = "walk to" if name == "Walk" else "look at"
     return _Move(why, f"{verb} {point} to see another part of the room.", name, _xyz(point))
@@ -181,7 +186,7 @@ def _spot(prompt: Prompt, goal: Goal, job: Job, thing: Thing, memory: Memory) ->
             return None
 
 
-def _drop_first(prompt: Prompt, plan: Plan, memory: Memory) -> _Move:
+def _drop_first(prompt: Prompt, plan: Plan, memory: Memory) -> _Move | None:
     """Empty the hand: where the held thing belongs, if a goal says so."""
     job = current_job(memory.hand, memory)
     if job and plan.goals[job.goal].relation is not Relation.HOLD:
@@ -191,10 +196,13 @@ def _drop_first(prompt: Prompt, plan: Plan, memory: Memory) -> _Move:
     return _drop_at_feet(prompt, memory)
 
 
-def _drop_at_feet(prompt: Prompt, memory: Memory) -> _Move:
+def _drop_at_feet(prompt: Prompt, memory: Memory) -> _Move | None:
     tag = memory.hand
+    if memory.aside >= _MAX_ASIDE:
+        return None
+    memory.aside += 1
     thing = memory.things.get(tag) or Thing(tag, prompt.body.position, 500.0, 0.1, 0.1)
-    spot = placing.floor_spot(prompt, memory, thing, None, memory.views % 3)
+    spot = placing.floor_spot(prompt, memory, thing, None, memory.aside - 1)
     return _Move(
         f"my hand holds {tag}, which has no place to go; it must be empty.",
         f"drop {tag} at {spot}.",

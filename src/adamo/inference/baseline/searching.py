@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from enum import IntEnum
 
 from adamo.geometry import Vec3
+from adamo.inference.baseline.memory import Memory, Thing
 from adamo.inference.baseline.reading import Prompt, Room
 
 SURVEY = 3
 """Steps of the first round: with the first frame they show the whole circle."""
+FAR_M = 2.6
+"""From farther away, small things and looks are not told reliably."""
+_MOST_VISITS = 14
+"""Steps at most to see far things from nearby."""
 _LOOKS = 4
 """Views that make a full circle, each a quarter turn on."""
 _GAZE_Z_M = 1.0
@@ -28,22 +35,42 @@ def places(room: Room) -> tuple[Vec3, ...]:
     )
 
 
-def is_over(room: Room, views: int) -> bool:
-    """Whether everything was looked at from everywhere."""
-    return views >= SURVEY + len(places(room)) * (1 + _LOOKS)
+class Stage(IntEnum):
+    """How thoroughly the room was searched."""
+
+    BEGUN = 0
+    ROUND = 1
+    """Looked all round from the start; some things were seen from afar only."""
+    CLOSE = 2
+    """All that was seen was seen from nearby."""
+    OVER = 3
+    """Looked from everywhere."""
 
 
-def next_step(prompt: Prompt, views: int) -> tuple[str, Vec3]:
-    """The next step of the search.
+def stage(prompt: Prompt, memory: Memory) -> Stage:
+    """How far the search is."""
+    if memory.views < SURVEY:
+        return Stage.BEGUN
+    if _far_thing(prompt, memory):
+        return Stage.ROUND
+    steps = SURVEY + len(places(prompt.room)) * (1 + _LOOKS)
+    return Stage.CLOSE if memory.views < steps else Stage.OVER
+
+
+def next_step(prompt: Prompt, memory: Memory) -> tuple[str, Vec3]:
+    """The next step of the search, which is counted in the memory.
 
     Args:
         prompt: For the room and the body.
-        views: Steps made so far; fewer than `is_over` asks for.
+        memory: How far the search is; not over yet.
 
     Returns:
         "Look" or "Walk", and the point.
     """
-    at, step = (0, 1) if views < SURVEY else divmod(views - SURVEY, 1 + _LOOKS)
+    if memory.views >= SURVEY and (thing := _far_thing(prompt, memory)):
+        return _go_closer(prompt, memory, thing)
+    at, step = (0, 1) if memory.views < SURVEY else divmod(memory.views - SURVEY, 1 + _LOOKS)
+    memory.views += 1
     if step == 0:
         return "Walk", places(prompt.room)[at]
     body = prompt.body.position
@@ -52,6 +79,29 @@ def next_step(prompt: Prompt, views: int) -> tuple[str, Vec3]:
         body.x + _GAZE_AHEAD_M * math.cos(yaw), body.y + _GAZE_AHEAD_M * math.sin(yaw), _GAZE_Z_M
     )
     return "Look", _into_room(prompt.room, body, ahead)
+
+
+def _far_thing(prompt: Prompt, memory: Memory) -> Thing | None:
+    """The nearest of the things that were seen from afar only."""
+    if memory.visits >= _MOST_VISITS:
+        return None
+    here = prompt.body.position
+    far = [thing for thing in memory.things.values() if thing.seen_m > FAR_M]
+    return min(far, key=lambda t: (here.horizontal_distance(t.position), t.tag), default=None)
+
+
+def _go_closer(prompt: Prompt, memory: Memory, thing: Thing) -> tuple[str, Vec3]:
+    memory.visits += 1
+    here, event = prompt.body.position, prompt.event
+    came = event is not None and event.name == "Walk" and memory.visits % 2 == 0
+    if came or here.horizontal_distance(thing.position) < FAR_M:
+        # Looked at once from as near as one gets, it counts as seen, even if it is hidden there.
+        for tag, other in memory.things.items():
+            if other.position.horizontal_distance(thing.position) < 0.3:
+                memory.things[tag] = replace(other, seen_m=min(other.seen_m, FAR_M))
+        memory.visits += memory.visits % 2
+        return "Look", thing.position
+    return "Walk", Vec3(thing.position.x, thing.position.y, 0.0)
 
 
 def _heading(prompt: Prompt) -> float:

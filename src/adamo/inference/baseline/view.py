@@ -12,6 +12,8 @@ from adamo.inference.baseline.reading import Prompt
 
 _EYES_M = 1.6
 """Height of a grown person's eyes."""
+_EYES_AHEAD_M = 0.08
+"""How far they are in front of the body's axis."""
 _USUAL_FOV_RAD = math.radians(65)
 _OFF_AXIS = 0.12
 """Things nearer to the axis (as a tangent) say too little about the focal length."""
@@ -26,10 +28,15 @@ def camera_of(prompt: Prompt) -> Camera | None:
     frame, gaze, position = prompt.frame, prompt.body.gaze, prompt.body.position
     if frame is None or gaze is None:
         return None
-    eyes = Vec3(position.x, position.y, position.z + _EYES_M)
+    heading = prompt.body.heading_rad
+    if heading is None:
+        heading = math.atan2(gaze.y - position.y, gaze.x - position.x)
+    eyes = position + Vec3(
+        _EYES_AHEAD_M * math.cos(heading), _EYES_AHEAD_M * math.sin(heading), _EYES_M
+    )
     line = gaze - eyes
     flat = math.hypot(line.x, line.y)
-    yaw = math.atan2(line.y, line.x) if flat > 1e-6 else prompt.body.heading_rad or 0.0
+    yaw = math.atan2(line.y, line.x) if flat > 1e-6 else heading
     camera = Camera(
         eyes, yaw, math.atan2(line.z, flat), _USUAL_FOV_RAD, frame.width_px, frame.height_px
     )

@@ -15,14 +15,11 @@ from numpy.typing import NDArray
 
 from adamo.geometry import Camera
 from adamo.inference.baseline.colours import shares
+from adamo.inference.baseline.drawn import INK_BELOW, Mask, Picture, PixelBox, clipped, drawn_over
 from adamo.inference.baseline.print_marks import print_share
 from adamo.inference.baseline.reading import Listed, Prompt
 from adamo.inference.baseline.sight import Sight
 from adamo.inference.baseline.view import camera_of
-
-Mask = NDArray[np.bool_]
-Picture = NDArray[np.uint8]
-PixelBox = tuple[int, int, int, int]
 
 _RING_PX = 12
 """Width of the frame around a box that shows what is behind the object, at 1080 lines."""
@@ -58,7 +55,8 @@ def _looked_at(
     if decoded is None:
         return {}
     picture: Picture = np.asarray(decoded, np.uint8)
-    drawn = _drawn_over(picture, things, points, camera)
+    boxes = [thing.box_px for thing in things if thing.box_px]
+    drawn = drawn_over(picture, boxes, points, camera)
     return {
         thing.tag: _look_at(picture, drawn, thing, things, camera)
         for thing in things
@@ -66,48 +64,12 @@ def _looked_at(
     }
 
 
-def _drawn_over(
-    picture: Picture,
-    things: tuple[Listed, ...],
-    points: tuple[tuple[float, float, float], ...],
-    camera: Camera | None,
-) -> Mask:
-    """Where boxes, tags and crosses hide the picture."""
-    height, width = picture.shape[:2]
-    margin = max(1, round(height / 540)) + 3
-    drawn = np.zeros((height, width), bool)
-    for thing in things:
-        if thing.box_px:
-            left, top, right, bottom = thing.box_px
-            outer = _clipped((left - margin, top - margin, right + margin, bottom + margin), drawn)
-            ring = drawn[outer].copy()
-            ring[:margin] = ring[-margin:] = True
-            ring[:, :margin] = ring[:, -margin:] = True
-            drawn[outer] = ring
-    if camera is not None and points:
-        reach = max(3, round(height / 180)) + 3
-        for u, v, depth in camera.project(np.array(points)):
-            if depth > 0:
-                box = (int(u) - reach, int(v) - reach, int(u) + reach, int(v) + reach)
-                drawn[_clipped(box, drawn)] = True
-    return drawn
-
-
-def _clipped(box: PixelBox, picture: NDArray[np.generic]) -> tuple[slice, slice]:
-    height, width = picture.shape[:2]
-    left, top, right, bottom = box
-    return (
-        slice(min(max(0, top), height), min(max(0, bottom), height)),
-        slice(min(max(0, left), width), min(max(0, right), width)),
-    )
-
-
 def _look_at(
     picture: Picture, drawn: Mask, thing: Listed, things: tuple[Listed, ...], camera: Camera | None
 ) -> Sight:
     assert thing.box_px is not None
     left, top, right, bottom = thing.box_px
-    area = _clipped(thing.box_px, drawn)
+    area = clipped(thing.box_px, drawn)
     crop = picture[area]
     if crop.size == 0:
         return Sight(0)
@@ -140,8 +102,8 @@ def _own_part(thing: Listed, things: tuple[Listed, ...], shape: tuple[int, ...])
         # On one surface, what reaches lower in the picture stands nearer.
         if other is thing or not other.box_px or other.box_px[3] <= bottom:
             continue
-        l, t, r, b = other.box_px
-        own[_clipped((l - left, t - top, r - left, b - top), own)] = False
+        x0, y0, x1, y1 = other.box_px
+        own[clipped((x0 - left, y0 - top, x1 - left, y1 - top), own)] = False
     return own if own.mean() > 0.15 else np.ones(shape[:2], bool)
 
 
@@ -151,11 +113,12 @@ def _behind(picture: Picture, drawn: Mask, box: PixelBox, crop: Picture) -> Mask
 
     ring_px = max(4, round(_RING_PX * picture.shape[0] / 1080))
     left, top, right, bottom = box
-    outer = _clipped((left - ring_px, top - ring_px, right + ring_px, bottom + ring_px), drawn)
+    outer = clipped((left - ring_px, top - ring_px, right + ring_px, bottom + ring_px), drawn)
     usable = ~drawn[outer]
     inner_top, inner_left = top - outer[0].start, left - outer[1].start
     usable[inner_top : inner_top + bottom - top, inner_left : inner_left + right - left] = False
     around = picture[outer][usable]
+    around = around[around.max(axis=1) > INK_BELOW]  # tags are no background, nor is anything ink
     if len(around) < 30:
         return np.zeros(crop.shape[:2], bool)
     counts = np.zeros((_BINS,) * 3, np.float32)

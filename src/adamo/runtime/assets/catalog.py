@@ -44,7 +44,25 @@ OBJECTS: Mapping[str, Builder] = _builders(
 )
 """Interactable objects."""
 
-FURNITURE: Mapping[str, Builder] = _builders({"furniture": ("table",)})
+FURNITURE: Mapping[str, Builder] = _builders(
+    {
+        "furniture": ("table",),
+        "living.tables": ("dining_table", "chair", "coffee_table", "side_table", "console"),
+        "living.seating": ("sofa",),
+        "living.storage": ("tall_shelf", "sideboard"),
+        "living.decor": (
+            "basket",
+            "curtains",
+            "floor_lamp",
+            "floor_vase",
+            "pendant_lamp",
+            "picture_hills",
+            "picture_leaves",
+            "picture_shapes",
+            "rug",
+        ),
+    }
+)
 """Things that objects stand on."""
 
 

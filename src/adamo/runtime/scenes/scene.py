@@ -8,6 +8,7 @@ from the catalog and never paths.
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
@@ -126,7 +127,7 @@ class Scene:
         )
 
 
-_BUILT_IN = {"s1": "s1_tabletop.toml"}
+_BUILT_IN = {"s1": "s1_tabletop.toml", "s2": "s2_living_room.toml"}
 
 
 def scene_names() -> tuple[str, ...]:
@@ -182,40 +183,50 @@ def parse_scene(text: str, source: str) -> Scene:
 
 def _check(scene: Scene, source: str) -> None:
     """What the types alone cannot say."""
+    room = scene.room
+    if room.x_max - room.x_min < 1 or room.y_max - room.y_min < 1:
+        raise SceneError(
+            f"{source}: room: smaller than 1 x 1 m; check x_min < x_max, y_min < y_max"
+        )
+    for where, problem in (*_misplaced(scene), *_misnamed(scene)):
+        raise SceneError(f"{source}: {where}: {problem}")
+
+
+def _misplaced(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Fields with a place outside the room."""
+    room = scene.room
+    placed = [("agent.position", scene.agent.position)]
+    placed += [(f"furniture[{i}].position", f.position) for i, f in enumerate(scene.furniture)]
+    placed += [(f"objects[{i}].position", o.position) for i, o in enumerate(scene.objects)]
+    for where, (x, y) in placed:
+        if not (room.x_min <= x <= room.x_max and room.y_min <= y <= room.y_max):
+            yield where, f"({x}, {y}) is outside the room; move it inside"
+    for i, area in enumerate(scene.areas):
+        if not (area.min[0] < area.max[0] and area.min[1] < area.max[1]):
+            yield f"areas[{i}]", "min must be below max in both axes"
+
+
+def _misnamed(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Fields with a name or id that is taken or unknown."""
     # Imported here: the catalog is above the plain data of a scene.
     from adamo.runtime.assets.catalog import FURNITURE, OBJECTS
 
-    def fail(where: str, problem: str) -> None:
-        raise SceneError(f"{source}: {where}: {problem}")
-
-    room = scene.room
-    if room.x_max - room.x_min < 1 or room.y_max - room.y_min < 1:
-        fail("room", "smaller than 1 x 1 m; check x_min < x_max and y_min < y_max")
-
-    def inside(where: str, x: float, y: float) -> None:
-        if not (room.x_min <= x <= room.x_max and room.y_min <= y <= room.y_max):
-            fail(where, f"({x}, {y}) is outside the room; move it inside")
-
-    inside("agent.position", *scene.agent.position)
-    names: set[str] = set()
+    names = {"floor"}
     for i, piece in enumerate(scene.furniture):
-        inside(f"furniture[{i}].position", *piece.position)
-        if piece.name in names or piece.name == "floor":
-            fail(f"furniture[{i}].name", f"{piece.name!r} is taken; choose another")
+        if piece.name in names:
+            yield f"furniture[{i}].name", f"{piece.name!r} is taken; choose another"
         if piece.asset not in FURNITURE:
-            fail(f"furniture[{i}].asset", f"unknown; one of {', '.join(sorted(FURNITURE))}")
+            yield f"furniture[{i}].asset", f"unknown; one of {', '.join(sorted(FURNITURE))}"
         names.add(piece.name)
     ids: set[int] = set()
     for i, item in enumerate(scene.objects):
-        inside(f"objects[{i}].position", *item.position)
         if item.id in ids:
-            fail(f"objects[{i}].id", f"{item.id} is taken; ids are unique")
+            yield f"objects[{i}].id", f"{item.id} is taken; ids are unique"
         if item.asset not in OBJECTS:
-            fail(f"objects[{i}].asset", f"unknown; one of {', '.join(sorted(OBJECTS))}")
-        if item.on.split("/")[0] not in {*names, "floor"}:
-            known = ", ".join(sorted({*names, "floor"}))
-            fail(f"objects[{i}].on", f"{item.on!r} is no furniture; one of {known}")
+            yield f"objects[{i}].asset", f"unknown; one of {', '.join(sorted(OBJECTS))}"
+        if item.on.split("/")[0] not in names:
+            yield (
+                f"objects[{i}].on",
+                f"{item.on!r} is no furniture; one of {', '.join(sorted(names))}",
+            )
         ids.add(item.id)
-    for i, area in enumerate(scene.areas):
-        if not (area.min[0] < area.max[0] and area.min[1] < area.max[1]):
-            fail(f"areas[{i}]", "min must be below max in both axes")

@@ -1,0 +1,1 @@
+"""The furniture and decoration of a living room."""

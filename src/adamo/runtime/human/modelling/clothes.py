@@ -1,0 +1,253 @@
+"""The clothes: a top with sleeves and a neckline, trousers, shoes. Shapes only."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from adamo.geometry import Array
+from adamo.runtime.human.modelling.shapes import (
+    Point,
+    Shape,
+    both,
+    chain,
+    common,
+    displaced,
+    ellipsoid,
+    half_space,
+    loft,
+    minus,
+    right_of,
+    round_cone,
+    slab,
+    union,
+)
+from adamo.runtime.human.modelling.variant import Variant
+from adamo.runtime.human.skeleton import INDEX, REST
+
+SHOULDER, ELBOW, WRIST = (
+    tuple(REST[INDEX[f"{name}_l"]].tolist()) for name in ("upper_arm", "forearm", "hand")
+)
+
+
+def _between(a: Point, b: Point, t: float) -> Point:
+    x, y, z = (p + t * (q - p) for p, q in zip(a, b, strict=True))
+    return (x, y, z)
+
+
+def mix(variant: Variant, masculine: float, feminine: float) -> float:
+    """A measure between those of two builds."""
+    return masculine + variant.feminine * (feminine - masculine)
+
+
+def torso(v: Variant) -> Shape:
+    """The top without its sleeves, hem at 0.90 m."""
+    g = v.girth
+    man = [
+        (0.885, -0.004, 0.121, 0.166), (0.93, -0.004, 0.120, 0.166), (1.00, 0.000, 0.112, 0.158),
+        (1.08, 0.002, 0.108, 0.152), (1.16, 0.002, 0.112, 0.156), (1.24, 0.000, 0.119, 0.166),
+        (1.31, -0.004, 0.118, 0.170), (1.37, -0.010, 0.094, 0.148), (1.42, -0.014, 0.066, 0.085),
+        (1.46, -0.012, 0.055, 0.060),
+    ]  # fmt: skip
+    woman = [
+        (0.885, -0.006, 0.122, 0.176), (0.93, -0.006, 0.119, 0.172), (1.00, -0.002, 0.104, 0.150),
+        (1.08, 0.002, 0.094, 0.130), (1.16, 0.003, 0.096, 0.131), (1.24, 0.000, 0.102, 0.143),
+        (1.31, -0.006, 0.098, 0.146), (1.37, -0.010, 0.082, 0.128), (1.42, -0.013, 0.058, 0.074),
+        (1.46, -0.012, 0.048, 0.052),
+    ]  # fmt: skip
+    rows = []
+    for (z, *a), (_, *b) in zip(man, woman, strict=True):
+        x, depth, width = (mix(v, p, q) for p, q in zip(a, b, strict=True))
+        rows.append((z, x, depth * g, width * g))
+    body = loft(rows, rounding=0.012)
+    bust = ellipsoid((0.070, 0.066, 1.262), (0.046, 0.056, 0.054))
+    chest = ellipsoid((0.070, 0.070, 1.290), (0.046, 0.075, 0.055))
+    return union(0.05, body, both(0.03, bust if v.feminine > 0.5 else chest))
+
+
+def sleeve(v: Variant) -> Shape:
+    """The left sleeve, open at the wrist."""
+    r = mix(v, 1.0, 0.87) * v.girth
+    high = (SHOULDER[0], SHOULDER[1] - 0.012, SHOULDER[2] - 0.012)
+    upper = _between(SHOULDER, ELBOW, 0.45)
+    lower = _between(ELBOW, WRIST, 0.35)
+    arm = chain(
+        (high, upper, ELBOW, lower, WRIST),
+        (0.064 * r, 0.056 * r, 0.049 * r, 0.048 * r, 0.040 * r),
+        0.02,
+    )
+    collar = chain(
+        ((-0.014, 0.03, 1.412), (-0.012, 0.11, 1.398), high), (0.05 * r, 0.054 * r, 0.062 * r), 0.03
+    )
+    start, end = _between(ELBOW, WRIST, 0.84), _between(ELBOW, WRIST, 0.97)
+    cuff = round_cone(start, end, 0.043 * r, 0.039 * r)
+    axis = np.subtract(WRIST, ELBOW)
+    outward = (float(axis[0]), float(axis[1]), float(axis[2]))
+    hollow = round_cone(_between(ELBOW, WRIST, 0.92), WRIST, 0.033 * r, 0.034 * r)
+    cut = half_space(_between(ELBOW, WRIST, 0.965), outward)
+    whole = union(0.006, union(0.03, arm, collar), cuff)
+    return minus(0.003, common(0.004, displaced(whole, _arm_folds), cut), hollow)
+
+
+def _arm_folds(p: Array) -> Array:
+    """Folds across the sleeve: deeper at the elbow and above the cuff."""
+    axis = np.subtract(WRIST, SHOULDER) / np.linalg.norm(np.subtract(WRIST, SHOULDER))
+    along = (p - SHOULDER) @ axis
+    phase = 2 * np.pi * along / 0.036 + 2.2 * np.sin(28 * p[:, 0] + 9 * along)
+    where = np.exp(-(((along - 0.285) / 0.06) ** 2)) + 0.8 * np.exp(-(((along - 0.45) / 0.05) ** 2))
+    where *= along < 0.49
+    return 0.0030 * where * np.sin(phase) + 0.0022 * np.exp(-(((along - 0.07) / 0.05) ** 2)) * np.sin(
+        2 * np.pi * along / 0.045 + 30 * p[:, 0]
+    )
+
+
+def _torso_folds(p: Array) -> Array:
+    """Folds of the top: across above the hem, slanted below the arms."""
+    x, y, z = np.moveaxis(p, 1, 0)
+    side = np.abs(y)
+    low = np.exp(-(((z - 0.985) / 0.045) ** 2))
+    across = np.sin(2 * np.pi * (z + 0.25 * side) / 0.042 + 1.6 * np.sin(17 * y + 11 * x))
+    arm = np.exp(-(((z - 1.24) / 0.06) ** 2)) * np.clip((side - 0.06) / 0.06, 0.0, 1.0)
+    slanted = np.sin(2 * np.pi * (z - 0.9 * side) / 0.05 + 9 * x)
+    return 0.0034 * low * across * np.clip(side / 0.05 + 0.35, 0, 1) + 0.0024 * arm * slanted
+
+
+def top(v: Variant) -> Shape:
+    """The whole top, open at the neck and the wrists."""
+    hem = union(0.0, common(0.006, _band(v, 0.888, 0.935, 0.0035), slab(0.888, 0.935)))
+    body = union(0.006, displaced(torso(v), _torso_folds), hem)
+    whole = union(0.035, body, both(0.0, sleeve(v)))
+    return minus(0.004, whole, neck_hole(v), _hem_hole(v))
+
+
+def _band(v: Variant, low: float, high: float, by: float) -> Shape:
+    body = torso(v)
+    return lambda p: body(p * [1, 1, 0] + np.clip(p[:, 2:], low + 0.012, high) * [0, 0, 1]) - by
+
+
+def _hem_hole(v: Variant) -> Shape:
+    body = torso(v)
+    return common(0.004, lambda p: body(p + [0, 0, 0.02]) + 0.012, slab(0.80, 0.905))
+
+
+def neck_hole(v: Variant) -> Shape:
+    """Where the neck comes out: tilted, lower in front."""
+    size = {"crew": 0.064, "roll": 0.058, "shirt": 0.060}[v.neckline] * mix(v, 1.04, 0.96)
+    tube = round_cone((0.0, 0.0, 1.42), (0.012, 0.0, 1.56), size, size)
+    return common(0.004, tube, half_space((-0.01, 0.0, 1.415), (0.42, 0.0, -1.0)))
+
+
+def collar(v: Variant) -> Shape:
+    """What closes the neckline: a ribbed ring, a roll or a turned-down collar."""
+    r = mix(v, 1.04, 0.96)
+    if v.neckline == "roll":
+        inner = chain(((-0.014, 0, 1.40), (-0.003, 0, 1.52)), (0.052 * r, 0.050 * r))
+        outer = chain(
+            ((-0.015, 0, 1.405), (-0.010, 0, 1.445), (-0.004, 0, 1.485)),
+            (0.066 * r, 0.066 * r, 0.061 * r), 0.02,
+        )  # fmt: skip
+        roll = common(0.01, outer, half_space((0.0, 0, 1.487), (-0.22, 0, 1.0)))
+        return minus(0.008, common(0.004, roll, half_space((0, 0, 1.40), (0.3, 0, -1.0))), inner)
+    if v.neckline == "shirt":
+        return _shirt_collar(r)
+    ring = _ring((-0.002, 0.0, 1.428), 0.068 * r, 0.064 * r, 0.0075, 0.40)
+    return union(0.0, ring)
+
+
+def _ring(center: Point, depth: float, width: float, thick: float, tilt: float) -> Shape:
+    """An elliptic ring around the neck, lower in front by `tilt` metres a metre."""
+
+    def distance(p: Array) -> Array:
+        x, y, z = np.moveaxis(p - np.array(center), 1, 0)
+        k = np.hypot(x / depth, y / width)
+        radial = (k - 1.0) * (depth + width) / 2
+        return np.hypot(radial, (z + tilt * x - 0.15 * np.abs(y)) * 0.85) - thick
+
+    return distance
+
+
+def _shirt_collar(r: float) -> Shape:
+    """A standing band with a turned-down leaf, parted in front."""
+
+    def distance(p: Array) -> Array:
+        x, y, z = np.moveaxis(p - np.array([-0.006, 0.0, 1.45]), 1, 0)
+        height = z + 0.36 * x
+        flare = np.clip(-height, 0, 0.05) * 0.62
+        k = np.hypot(x / (0.066 * r), y / (0.063 * r))
+        radial = (k - 1.0) * 0.064 * r - flare
+        parted = 0.010 - np.abs(y) + np.clip(0.018 - height, 0, 0.1) * -0.42
+        leaf = np.maximum(np.abs(radial) - 0.0042, np.maximum(height - 0.022, -0.026 - height))
+        return np.maximum(leaf, np.where(x > 0, parted + 0.0, -1.0))
+
+    return distance
+
+
+def trousers(v: Variant) -> Shape:
+    """Both legs, open at the ankles; the waist ends under the top."""
+    r = mix(v, 1.0, 0.97) * v.girth
+    w = mix(v, 0.160, 0.170) * v.girth
+    hips = loft(
+        [
+            (0.82, -0.004, 0.095, w * 0.92), (0.88, -0.006, 0.112, w), (0.95, -0.006, 0.108, w * 0.98),
+            (1.02, -0.002, 0.098, w * 0.86), (1.05, 0.0, 0.095, w * 0.82),
+        ],
+        0.02,
+    )  # fmt: skip
+    seat = ellipsoid((-0.058, 0.072, 0.895), (0.078, 0.080, 0.090))
+    leg = chain(
+        (
+            (0.000, 0.086, 0.87), (0.012, 0.092, 0.72), (0.014, 0.096, 0.50),
+            (-0.004, 0.099, 0.36), (-0.014, 0.102, 0.05),
+        ),
+        (0.091 * r, 0.083 * r, 0.064 * r, 0.062 * r, 0.055 * r),
+        0.02,
+    )  # fmt: skip
+    hollow = round_cone((-0.014, 0.102, 0.10), (-0.014, 0.102, 0.02), 0.046 * r, 0.051 * r)
+    cut = slab(0.042, 2.0)
+    left = minus(0.003, common(0.004, displaced(leg, _leg_folds), cut), hollow)
+    return union(0.035, hips, both(0.02, seat), both(0.028, left))
+
+
+def _leg_folds(p: Array) -> Array:
+    """Folds across the leg: at the knee, the groin and above the shoe; a crease along the front."""
+    x, y, z = np.moveaxis(p, 1, 0)
+    around = np.arctan2(y - 0.097, x)
+    phase = 2 * np.pi * z / 0.05 + 1.7 * np.sin(2 * around + 20 * z)
+    where = 0.9 * np.exp(-(((z - 0.47) / 0.06) ** 2)) + np.exp(-(((z - 0.10) / 0.055) ** 2))
+    where += 0.7 * np.exp(-(((z - 0.80) / 0.05) ** 2))
+    return 0.0036 * where * np.sin(phase)
+
+
+def shoe_upper() -> Shape:
+    """The left shoe above its sole."""
+    front = ellipsoid((0.098, 0.107, 0.028), (0.094, 0.047, 0.043))
+    heel = ellipsoid((-0.034, 0.099, 0.045), (0.046, 0.036, 0.056))
+    instep = round_cone((-0.012, 0.100, 0.074), (0.085, 0.105, 0.038), 0.040, 0.030)
+    ankle = round_cone((-0.022, 0.100, 0.06), (-0.022, 0.101, 0.096), 0.040, 0.041)
+    whole = union(0.035, front, heel, instep, ankle)
+    return common(0.004, whole, slab(0.012, 0.115))
+
+
+def shoe_sole() -> Shape:
+    """The left sole."""
+    front = ellipsoid((0.098, 0.107, 0.012), (0.102, 0.053, 0.30))
+    heel = ellipsoid((-0.030, 0.099, 0.012), (0.060, 0.042, 0.30))
+    middle = ellipsoid((0.03, 0.102, 0.012), (0.09, 0.039, 0.30))
+    lifted: Callable[[Array], Array] = lambda p: p[:, 2] - 0.024 - 0.4 * np.clip(p[:, 0] - 0.14, 0, 1)
+    return common(0.008, union(0.03, front, heel, middle), slab(0.0, 0.2), lifted)
+
+
+def laces() -> Shape:
+    """Three bars across the left instep."""
+    bars = []
+    for i in range(4):
+        x, z = 0.030 + 0.019 * i, 0.0905 - 0.0085 * i
+        bars.append(chain(((x, 0.084, z - 0.006), (x + 0.002, 0.104, z), (x, 0.124, z - 0.006)),
+                          (0.0036, 0.004, 0.0036)))  # fmt: skip
+    return union(0.002, *bars)
+
+
+def right(shape: Shape) -> Shape:
+    """The right one of a pair."""
+    return right_of(shape)

@@ -1,0 +1,240 @@
+"""The built-in engine keeps the rules of the world on the tabletop."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from adamo.action import Code, Outcome
+from adamo.engine import FLOOR, WorldState
+from adamo.geometry import Vec3
+from adamo.observation import NOTHING
+from adamo.runtime.builtin import BuiltinEngine
+from adamo.runtime.embodiment import REACH_M
+from adamo.runtime.navigation import BODY_RADIUS_M
+from adamo.runtime.scenes import load_scene
+
+PLATE, GLASS, KEY, TAPE, CUP, BOTTLE = 57, 37, 34, 4, 45, 36
+SMALL = (480, 270)
+
+
+def place(state: WorldState, object_id: int) -> Vec3:
+    return state.object(object_id).box.center
+
+
+def test_everything_settles_where_the_scene_says(engine: BuiltinEngine) -> None:
+    state = engine.state()
+    assert len(state.objects) == 19
+    for item, placed in zip(
+        state.objects, sorted(load_scene("s1").objects, key=lambda o: o.id), strict=True
+    ):
+        assert item.support == "table"
+        assert item.box.center.horizontal_distance(Vec3(*placed.position, 0)) < 0.005
+        assert item.box.bottom_z == pytest.approx(0.78, abs=0.003)
+        assert item.box.orientation.matrix()[2, 2] > 0.999
+
+
+def test_what_rests_goes_on_resting(engine: BuiltinEngine) -> None:
+    before = engine.state()
+    for target in (CUP, KEY, PLATE):
+        engine.pick(target)
+        engine.drop(Vec3(-1.6, -2.0, 0.0))
+    after = engine.state()
+    for item in before.objects:
+        if item.id not in (CUP, KEY, PLATE):
+            assert after.object(item.id).box == item.box
+
+
+def test_the_first_view_shows_all_objects(engine: BuiltinEngine) -> None:
+    percept = engine.capture(1920, 1080)
+    assert sorted(percept.objects) == [item.id for item in engine.state().objects]
+    assert percept.rgb.shape == (1080, 1920, 3)
+    for layer in percept.id_layers:
+        assert set(np.unique(layer)) <= {NOTHING, *percept.objects}
+
+
+def test_ids_agree_with_the_geometry(engine: BuiltinEngine) -> None:
+    """Pixels of each object lie where its box is projected: nothing leaks at the edges."""
+    percept = engine.capture(1920, 1080)
+    for item in percept.objects.values():
+        corners = percept.camera.project(item.box.corners())
+        low, high = corners[:, :2].min(axis=0) - 2, corners[:, :2].max(axis=0) + 2
+        for layer in percept.id_layers:
+            rows, columns = np.nonzero(layer == item.id)
+            assert (columns >= low[0]).all()
+            assert (columns <= high[0]).all()
+            assert (rows >= low[1]).all()
+            assert (rows <= high[1]).all()
+
+
+def test_what_stands_behind_the_glass_is_in_the_second_layer(engine: BuiltinEngine) -> None:
+    engine.pick(KEY)
+    glass = place(engine.state(), GLASS)
+    engine.drop(Vec3(glass.x + 0.075, glass.y, 0.78))
+    engine.walk_to(Vec3(-0.85, glass.y, 0))
+    engine.look_at(glass)
+    front, behind = engine.capture(1920, 1080).id_layers
+    assert (front == GLASS).any()
+    assert not (behind == GLASS).any()
+    assert (behind == KEY).sum() > (front == KEY).sum()
+
+
+def test_picking_walks_within_reach_and_holds(engine: BuiltinEngine) -> None:
+    report = engine.pick(PLATE)
+    state = engine.state()
+    assert (report.outcome, report.code) == (Outcome.DONE, Code.REPOSITIONED)
+    assert report.point is not None
+    assert engine.body().position.horizontal_distance(report.point) <= REACH_M
+    held = state.object(PLATE)
+    assert held.held
+    assert held.support is None
+    assert state.body.held == PLATE
+    assert engine.pick(GLASS).code == Code.HAND_FULL
+
+
+def test_the_held_object_goes_with_the_body(engine: BuiltinEngine) -> None:
+    engine.pick(CUP)
+    engine.walk_to(Vec3(2.0, 2.0, 0.0))
+    state = engine.state()
+    assert place(state, CUP).horizontal_distance(state.body.position) < 0.6
+    assert 0.8 < place(state, CUP).z < 1.3
+
+
+def test_a_free_point_on_the_floor_takes_the_object(engine: BuiltinEngine) -> None:
+    engine.pick(PLATE)
+    report = engine.drop(Vec3(-1.6, -2.4, 0.0))
+    item = engine.state().object(PLATE)
+    assert report.outcome is Outcome.DONE
+    assert report.support == item.support == FLOOR
+    assert item.box.center.horizontal_distance(Vec3(-1.6, -2.4, 0)) < 0.03
+    assert item.box.bottom_z == pytest.approx(0.0, abs=0.003)
+    assert not item.held
+
+
+def test_a_point_on_another_object_is_corrected(engine: BuiltinEngine) -> None:
+    engine.pick(GLASS)
+    plate = place(engine.state(), PLATE)
+    report = engine.drop(plate)
+    item = engine.state().object(GLASS)
+    assert (report.outcome, report.code) == (Outcome.CORRECTED, Code.PLACED_ELSEWHERE)
+    assert item.support == "table"
+    assert 0.1 < item.box.center.horizontal_distance(plate) < 0.3
+
+
+def test_a_point_in_the_air_above_the_table_lands_on_it(engine: BuiltinEngine) -> None:
+    engine.pick(CUP)
+    report = engine.drop(Vec3(-0.42, -0.35, 1.1))
+    assert report.outcome is Outcome.CORRECTED
+    assert engine.state().object(CUP).support == "table"
+
+
+def test_a_point_far_from_any_surface_is_refused_and_nothing_changes(
+    engine: BuiltinEngine,
+) -> None:
+    engine.pick(CUP)
+    before = engine.state().hash()
+    report = engine.drop(Vec3(1.5, 1.5, 1.6))
+    assert (report.outcome, report.code) == (Outcome.REFUSED, Code.NO_FREE_SPOT)
+    assert engine.state().hash() == before
+
+
+def test_dropping_with_an_empty_hand_is_refused(engine: BuiltinEngine) -> None:
+    assert engine.drop(Vec3(0, 0, 0)).code == Code.HAND_EMPTY
+
+
+def test_the_body_never_stands_on_what_it_drops(engine: BuiltinEngine) -> None:
+    engine.pick(PLATE)
+    here = engine.body().position
+    engine.drop(here)
+    plate = place(engine.state(), PLATE)
+    assert plate.horizontal_distance(here) < 0.05
+    assert engine.body().position.horizontal_distance(plate) > BODY_RADIUS_M + 0.125
+
+
+def test_walking_around_and_into_the_table(engine: BuiltinEngine) -> None:
+    over = engine.walk_to(Vec3(2.0, -1.0, 0.0))
+    assert over.outcome is Outcome.DONE
+    assert over.walked_m > 4.0
+    into = engine.walk_to(Vec3(-0.05, -1.0, 0.0))
+    assert (into.outcome, into.code) == (Outcome.CORRECTED, Code.STOPPED_SHORT)
+    assert into.point is not None
+    assert into.point.x > 0.475 + BODY_RADIUS_M - 0.01
+
+
+def test_looking_straight_down_is_corrected(engine: BuiltinEngine) -> None:
+    here = engine.body().position
+    assert engine.look_at(Vec3(here.x, here.y, 0.0)).code == Code.GAZE_LIMITED
+    assert engine.look_at(Vec3(here.x, here.y + 1.0, 0.0)).outcome is Outcome.DONE
+
+
+def test_the_looked_at_point_is_in_the_middle_of_the_view(engine: BuiltinEngine) -> None:
+    target = Vec3(0.326, -0.603, 0.8)
+    engine.look_at(target)
+    camera = engine.capture(*SMALL).camera
+    assert camera.project(target.array()[None])[0, :2] == pytest.approx((240, 135), abs=1)
+
+
+def test_rays_pass_through_the_held_object(engine: BuiltinEngine) -> None:
+    engine.pick(PLATE)
+    hand = place(engine.state(), PLATE)
+    eyes = engine.body().eyes
+    direction = (hand - eyes).array()[None] / (hand - eyes).norm()
+    [hit] = engine.raycast(eyes, direction)
+    assert hit is not None
+    assert hit.distance(eyes) > hand.distance(eyes) + 0.1
+
+
+def test_rays_hit_what_the_picture_shows(engine: BuiltinEngine) -> None:
+    camera = engine.capture(*SMALL).camera
+    table_point = np.array([[-0.5, -1.0, 0.78]])
+    pixel = camera.project(table_point)[:, :2]
+    [hit] = engine.raycast(camera.position, camera.rays(pixel))
+    assert hit is not None
+    assert hit.array() == pytest.approx(table_point[0], abs=0.01)
+
+
+def _play(engine: BuiltinEngine) -> tuple[str, bytes]:
+    engine.reset(3)
+    engine.pick(PLATE)
+    engine.drop(Vec3(-1.6, -2.4, 0.0))
+    engine.look_at(Vec3(0, -1, 0.8))
+    engine.pick(BOTTLE)
+    engine.drop(Vec3(-0.3, -0.6, 0.78))
+    return engine.state().hash(), engine.capture(*SMALL).rgb.tobytes()
+
+
+def test_the_same_seed_gives_the_same_states_and_frames(engine: BuiltinEngine) -> None:
+    assert _play(engine) == _play(engine)
+
+
+def test_another_process_gives_the_same_states_and_frames(engine: BuiltinEngine) -> None:
+    program = (
+        "import hashlib; from adamo.runtime.builtin import BuiltinEngine;"
+        "from tests.test_builtin_engine import _play;"
+        "h, f = _play(BuiltinEngine('s1')); print(h, hashlib.sha256(f).hexdigest())"
+    )
+    import hashlib
+
+    digest, frame = _play(engine)
+    out = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    ).stdout
+    assert out.split() == [digest, hashlib.sha256(frame).hexdigest()]
+
+
+def test_another_action_gives_another_hash(engine: BuiltinEngine) -> None:
+    start = engine.state().hash()
+    engine.look_at(Vec3(1, 1, 1))
+    assert engine.state().hash() != start
+    engine.reset(0)
+    assert engine.state().hash() == start
+
+
+def test_what_is_said_is_delivered(engine: BuiltinEngine) -> None:
+    engine.say("Done.")
+    assert list(engine.said) == ["Done."]
+    engine.reset(0)
+    assert list(engine.said) == []

@@ -1,0 +1,44 @@
+"""Prompts are files, rendered strictly, and change only on purpose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from adamo.action import Drop, Look, Pick, Walk
+from adamo.benchmark.conditions import NEAR_M
+from adamo.cognition.instructions import system_prompt
+from adamo.cognition.prompts import render
+from adamo.errors import ConfigError
+from adamo.perception import Labeling
+from adamo.runtime.scenes import load_scene
+
+GOLDEN = Path(__file__).parent / "golden"
+ACTIONS = (Look, Walk, Pick, Drop)
+
+
+@pytest.mark.parametrize("labeling", list(Labeling))
+def test_the_system_prompt_is_as_agreed(labeling: Labeling) -> None:
+    rendered = system_prompt(load_scene("s1").info(), labeling, ACTIONS, NEAR_M)
+    golden = GOLDEN / f"system_s1_{labeling}.md"
+    assert rendered + "\n" == golden.read_text(encoding="utf-8")
+
+
+def test_the_symbolic_state_is_as_agreed() -> None:
+    rendered = render(
+        "symbolic_state",
+        objects="- Plate_57: center (0.326, -0.603, 0.795), volume 1875.0 cm3",
+        points="none",
+        agent="- position (-2.00, -1.00, 0.00)",
+    )
+    assert rendered + "\n" == (GOLDEN / "symbolic_state.md").read_text(encoding="utf-8")
+
+
+def test_a_missing_variable_is_an_error() -> None:
+    with pytest.raises(ConfigError, match=r"symbolic_state\.md: 'points' is undefined"):
+        render("symbolic_state", objects="none", agent="none")
+
+
+def test_braces_in_values_are_not_rendered_again() -> None:
+    assert "{{ agent }}" in render("symbolic_state", objects="{{ agent }}", points="", agent="")
