@@ -162,6 +162,7 @@ def test_walking_around_and_into_the_table(engine: BuiltinEngine) -> None:
     assert (into.outcome, into.code) == (Outcome.CORRECTED, Code.STOPPED_SHORT)
     assert into.point is not None
     assert into.point.x > 0.475 + BODY_RADIUS_M - 0.01
+    assert into.walked_m < 2.0
 
 
 def test_looking_straight_down_is_corrected(engine: BuiltinEngine) -> None:

@@ -37,7 +37,7 @@ target = [0, 0, 0]
 diffuse = 0.5
 [[furniture]]
 name = "desk"
-asset = "table"
+asset = "dining_table"
 position = [1, 0]
 [[objects]]
 id = 1
@@ -54,7 +54,7 @@ def test_s1_is_the_tabletop_of_the_paper() -> None:
     assert room.height_m == 3.2
     assert scene.agent.position == (-2, -1)
     assert scene.agent.gaze == (0.51, -1.25, 1.17)
-    assert [(p.asset, p.position) for p in scene.furniture] == [("table", (-0.05, -1.0))]
+    assert [(p.asset, p.position) for p in scene.furniture] == [("dining_table", (-0.05, -1.0))]
     assert {item.id: item.position for item in scene.objects} == S1_PLACES
     corners = {(area.min, area.max) for area in scene.areas if area.kind == "corner"}
     assert corners == {

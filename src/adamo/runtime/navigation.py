@@ -142,7 +142,12 @@ class Ways:
         """The way to the reachable place nearest to a target: the very point if one can stand."""
         centres = self.floor._centres
         distance = np.hypot(*(centres - [target.x, target.y]).T)
-        cell = int(np.argmin(np.where(np.isfinite(self.lengths_m), distance, np.inf)))
+        distance = np.where(np.isfinite(self.lengths_m), distance, np.inf)
+        # Of places that are about as near (both sides of a table) the shortest way decides.
+        about = distance <= distance.min() + CELL_M
+        cell = int(np.argmin(np.where(about, self.lengths_m + distance, np.inf)))
+        if self.floor.can_stand(target):
+            cell = int(np.argmin(distance))
         exact = distance[cell] < CELL_M and self.floor.can_stand(target)
         return self._way(cell, np.array([target.x, target.y]) if exact else centres[cell])
 

@@ -18,6 +18,11 @@ _HUES: tuple[tuple[int, str], ...] = (
     (181, "red"),
 )
 """Upper ends of the hues (0 to 180) of each name."""
+_NAMES = (*dict.fromkeys(name for _, name in _HUES), "brown", "black", "grey", "white")
+_CODE = {name: code for code, name in enumerate(_NAMES)}
+_CODE_OF_HUE = np.array(
+    [_CODE[next(name for end, name in _HUES if hue < end)] for hue in range(181)], np.int64
+)
 _BLACK_BELOW = 55
 _PALE = 42
 """Saturation below which a colour has no hue."""
@@ -41,18 +46,17 @@ def shares(crop: NDArray[np.uint8], mask: NDArray[np.bool_]) -> Mapping[str, flo
 
     if not mask.any():
         return {}
-    hsv = cv2.cvtColor(crop, cv2.COLOR_BGR2HSV)[mask].astype(np.int16)
+    hsv = cv2.cvtColor(crop, cv2.COLOR_BGR2HSV)[mask]
     hue, saturation, value = hsv[:, 0], hsv[:, 1], hsv[:, 2]
-    edges = np.array([edge for edge, _ in _HUES])
-    names = np.array([name for _, name in _HUES], dtype=object)[
-        np.searchsorted(edges, hue, side="right")
-    ]
-    warm = (names == "orange") | (names == "yellow") | (names == "red")
-    names[warm & (names != "red") & (value < _BROWN_BELOW)] = "brown"
+    codes = _CODE_OF_HUE[hue]
+    warm = (codes == _CODE["orange"]) | (codes == _CODE["yellow"])
+    codes[warm & (value < _BROWN_BELOW)] = _CODE["brown"]
     pale = saturation < _PALE
-    names[pale] = "grey"
+    codes[pale] = _CODE["grey"]
     cream = (saturation < _CREAM) & (hue >= 10) & (hue < 40)
-    names[(pale | cream) & (value >= _WHITE_FROM)] = "white"
-    names[(value < _BLACK_BELOW) | (pale & (value < _BLACK_BELOW + 15))] = "black"
-    found, counts = np.unique(names.astype(str), return_counts=True)
-    return {str(name): float(count) / len(names) for name, count in zip(found, counts, strict=True)}
+    codes[(pale | cream) & (value >= _WHITE_FROM)] = _CODE["white"]
+    codes[(value < _BLACK_BELOW) | (pale & (value < _BLACK_BELOW + 15))] = _CODE["black"]
+    counts = np.bincount(codes, minlength=len(_NAMES))
+    return {
+        name: float(count) / len(codes) for name, count in zip(_NAMES, counts, strict=True) if count
+    }

@@ -46,7 +46,6 @@ OBJECTS: Mapping[str, Builder] = _builders(
 
 FURNITURE: Mapping[str, Builder] = _builders(
     {
-        "furniture": ("table",),
         "living.tables": ("dining_table", "chair", "coffee_table", "side_table", "console"),
         "living.seating": ("sofa",),
         "living.storage": ("tall_shelf", "sideboard"),

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from adamo.geometry import Array
-from adamo.runtime.human.rotations import about_y, rotation_vectors
+from adamo.runtime.human.rotations import about, about_y, rotation_vectors
 from adamo.runtime.human.skeleton import EYES, INDEX, JOINTS, REST, Pose, joint_frames
 
 _PALM_M = 0.03
@@ -159,15 +159,9 @@ def mirrored(pose: Pose) -> Pose:
 
 def fingers(side: str, closed_rad: float) -> dict[str, Array]:
     """Local rotation of the fingers, closed by an angle."""
-    from adamo.runtime.human.rotations import about
-
     return {f"fingers_{side}": about(tuple(FINGER_AXIS[side]), closed_rad)}
 
 
 def lids(closed_rad: float) -> dict[str, Array]:
-    """Local rotation of the eyelids: 0 open, `LIDS_SHUT_RAD` shut."""
+    """Local rotation of the eyelids, 0 open."""
     return {"eyelids": about_y(closed_rad)}
-
-
-LIDS_SHUT_RAD = np.radians(50.0)
-"""Turn of the eyelids about +Y that shuts the eyes."""

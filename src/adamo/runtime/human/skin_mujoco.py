@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from adamo.geometry import Array
+from adamo.runtime.assets.asset import Material
 from adamo.runtime.human.looks import HEAD_GARMENTS, Figure, Garment
 from adamo.runtime.human.skeleton import JOINTS, REST
 
@@ -60,10 +61,8 @@ def pose_human(
 
 
 def _add_skin(spec: mujoco.MjSpec, garment: Garment) -> None:
-    from adamo.runtime.assets.mujoco_parts import add_material
-
     name = f"human_{garment.name}"
-    add_material(spec, garment.material, name)
+    _add_material(spec, garment.material, name)
     bones = [j for j in range(len(JOINTS)) if (garment.weights[garment.bone_ids == j] > 0).any()]
     held = [np.nonzero((garment.bone_ids == j) & (garment.weights > 0)) for j in bones]
     spec.add_skin(
@@ -71,7 +70,7 @@ def _add_skin(spec: mujoco.MjSpec, garment: Garment) -> None:
         material=name,
         group=HEAD_GROUP if garment.name in HEAD_GARMENTS else BODY_GROUP,
         vert=garment.vertices.ravel().tolist(),
-        texcoord=(garment.uvs * [1, -1] + [0, 1]).ravel().tolist(),
+        texcoord=garment.uvs.ravel().tolist(),
         face=garment.faces.ravel().tolist(),
         bodyname=[body_name(JOINTS[j]) for j in bones],
         bindpos=REST[bones].ravel().tolist(),
@@ -79,3 +78,27 @@ def _add_skin(spec: mujoco.MjSpec, garment: Garment) -> None:
         vertid=[rows.tolist() for rows, _ in held],
         vertweight=[garment.weights[rows, slots].tolist() for rows, slots in held],
     )
+
+
+def _add_material(spec: mujoco.MjSpec, material: Material, name: str) -> None:
+    import mujoco
+
+    made = spec.add_material(
+        name=name,
+        rgba=material.rgba,
+        specular=material.specular,
+        shininess=material.shininess,
+    )
+    if material.texture is None:
+        return
+    height, width, channels = material.texture.shape
+    texture = spec.add_texture(
+        name=name,
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        width=width,
+        height=height,
+        nchannel=channels,
+    )
+    # MuJoCo wants the bottom row first.
+    texture.data = material.texture[::-1].tobytes()
+    made.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name

@@ -13,14 +13,14 @@ from adamo.runtime.assets.kit import Mesh, box, merge
 from adamo.runtime.assets.living.joinery import upright_box
 
 _COVERS = (
-    (116, 50, 38),
-    (150, 106, 52),
-    (72, 82, 60),
-    (92, 66, 50),
-    (58, 50, 46),
-    (138, 82, 58),
-    (98, 100, 78),
-    (120, 98, 70),
+    (128, 48, 36),
+    (176, 122, 52),
+    (84, 92, 62),
+    (104, 70, 50),
+    (62, 52, 46),
+    (158, 92, 62),
+    (140, 116, 78),
+    (88, 44, 40),
 )
 """8 bit sRGB: muted, none of them blue or near white."""
 _PAPER = (176, 158, 122)
@@ -48,12 +48,14 @@ def book_row(
         seed: Of the variation.
     """
     rng = np.random.default_rng(seed)
-    meshes, x = [], 0.0
+    covers = np.concatenate([rng.permutation(len(_COVERS)) for _ in range(6)])
+    meshes: list[Mesh] = []
+    x = 0.0
     while x < length - 0.015:
         thick = min(float(rng.uniform(0.018, 0.042)), length - x)
         high = tallest * float(rng.uniform(0.78, 1.0))
         deep = depth * float(rng.uniform(0.86, 1.0))
-        book = _book((deep, high, thick), int(rng.integers(len(_COVERS))))
+        book = _book((deep, high, thick), int(covers[len(meshes)]))
         # Lying with its back to -x: stand it up and turn the back to the front.
         standing = book.turned("x", 90).turned("z", 90)
         low = standing.lower

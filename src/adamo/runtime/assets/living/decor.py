@@ -63,7 +63,7 @@ def floor_lamp() -> Asset:
 
 def pendant_lamp() -> Asset:
     """Lamp that hangs from a ceiling at 3.20 m, its lower rim at 2.05 m."""
-    bell = np.array(((0.235, 0.0), (0.232, 0.02), (0.19, 0.12), (0.09, 0.20), (0.035, 0.235)))
+    bell = spline(((0.235, 0.0), (0.222, 0.07), (0.165, 0.15), (0.085, 0.21), (0.030, 0.235)), 12)
     outside = revolve(np.vstack((bell, ((0.0, 0.235),))), 40)
     inside = revolve(np.vstack((bell * (0.985, 1.0), ((0.0, 0.228),)))[::-1], 40)
     cord = cylinder(0.004, 0.92, segments=8).moved(z=2.74)

@@ -7,7 +7,7 @@ so the two cannot disagree.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from adamo.runtime.assets import paint
 from adamo.runtime.assets.asset import Asset, Collider, Looks, Material, Part, Surface
-from adamo.runtime.assets.kit import Mesh, box, ellipsoid, merge
+from adamo.runtime.assets.kit import Mesh, box, loft, merge
 
 Triple = tuple[float, float, float]
 
@@ -100,11 +100,19 @@ def cushion(size: Triple, plan: float = 7.0, crown: float = 3.2, detail: int = 2
         crown: How flat its top is.
         detail: Facets around.
     """
-    ball = ellipsoid(1.0, 1.0, 1.0, detail, detail * 3 // 8)
-    x, y, z = np.abs(ball.vertices).T
-    length = ((x**plan + y**plan) ** (crown / plan) + z**crown) ** (1 / crown)
-    points = ball.vertices / length[:, None] * np.array(size) / 2
-    return replace(ball, vertices=points).shaded(70.0)
+    around = np.linspace(0.0, 2 * np.pi, detail, endpoint=False)
+    rise = np.linspace(-np.pi / 2, np.pi / 2, detail * 3 // 8 + 1)
+    outline = np.column_stack((_power(np.cos(around), plan), _power(np.sin(around), plan)))
+    spread, height = _power(np.cos(rise), crown), _power(np.sin(rise), crown)
+    rings = [
+        np.column_stack((outline * max(wide, 0.02), np.full(detail, up)))
+        for wide, up in zip(spread, height, strict=True)
+    ]
+    return loft(rings).scaled(*(edge / 2 for edge in size)).shaded(70.0)
+
+
+def _power(wave: NDArray[np.float64], exponent: float) -> NDArray[np.float64]:
+    return np.asarray(np.sign(wave) * np.abs(wave) ** (2 / exponent))
 
 
 def upright_box(mesh: Mesh) -> Collider:

@@ -70,8 +70,8 @@ def bordered_rug(height: int = 384, width: int = 512) -> Picture:
     picture = np.full((height, width, 3), (150, 108, 78), dtype=np.float64)
     row, column = v * 13, u * 18
     diamond = np.abs(row % 1 - 0.5) + np.abs(column % 1 - 0.5)
-    picture = _over(picture, (126, 78, 56), 0.75 * (diamond < 0.26))
-    picture = _over(picture, (168, 128, 90), 0.6 * (diamond < 0.10))
+    picture = _over(picture, (134, 90, 64), 0.7 * (diamond < 0.26))
+    picture = _over(picture, (160, 120, 86), 0.5 * (diamond < 0.10))
     picture = _over(picture, (104, 70, 52), edge < 0.24)
     picture = _over(picture, (160, 118, 80), (edge < 0.205) & (edge > 0.185))
     picture = _over(picture, (160, 118, 80), (edge < 0.075) & (edge > 0.055))

@@ -15,6 +15,7 @@ from adamo.runtime.human.modelling.shapes import (
     common,
     displaced,
     ellipsoid,
+    grown,
     half_space,
     loft,
     minus,
@@ -45,13 +46,13 @@ def torso(v: Variant) -> Shape:
     """The top without its sleeves, hem at 0.90 m."""
     g = v.girth
     man = [
-        (0.885, -0.004, 0.121, 0.166), (0.93, -0.004, 0.120, 0.166), (1.00, 0.000, 0.112, 0.158),
+        (0.80, -0.004, 0.104, 0.140), (0.885, -0.004, 0.121, 0.166), (0.93, -0.004, 0.120, 0.166), (1.00, 0.000, 0.112, 0.158),
         (1.08, 0.002, 0.108, 0.152), (1.16, 0.002, 0.112, 0.156), (1.24, 0.000, 0.119, 0.166),
         (1.31, -0.004, 0.118, 0.170), (1.37, -0.010, 0.094, 0.148), (1.42, -0.014, 0.066, 0.085),
         (1.46, -0.012, 0.055, 0.060),
     ]  # fmt: skip
     woman = [
-        (0.885, -0.006, 0.122, 0.176), (0.93, -0.006, 0.119, 0.172), (1.00, -0.002, 0.104, 0.150),
+        (0.80, -0.006, 0.104, 0.148), (0.885, -0.006, 0.122, 0.176), (0.93, -0.006, 0.119, 0.172), (1.00, -0.002, 0.104, 0.150),
         (1.08, 0.002, 0.094, 0.130), (1.16, 0.003, 0.096, 0.131), (1.24, 0.000, 0.102, 0.143),
         (1.31, -0.006, 0.098, 0.146), (1.37, -0.010, 0.082, 0.128), (1.42, -0.013, 0.058, 0.074),
         (1.46, -0.012, 0.048, 0.052),
@@ -63,22 +64,29 @@ def torso(v: Variant) -> Shape:
     body = loft(rows, rounding=0.012)
     bust = ellipsoid((0.070, 0.066, 1.262), (0.046, 0.056, 0.054))
     chest = ellipsoid((0.070, 0.070, 1.290), (0.046, 0.075, 0.055))
-    return union(0.05, body, both(0.03, bust if v.feminine > 0.5 else chest))
+    front = union(0.05, body, both(0.03, bust if v.feminine > 0.5 else chest))
+    return union(0.04, front, grown(_seat(), 0.006))
+
+
+def _seat() -> Shape:
+    return both(0.03, ellipsoid((-0.056, 0.070, 0.900), (0.072, 0.078, 0.088)))
+
 
 
 def sleeve(v: Variant) -> Shape:
     """The left sleeve, open at the wrist."""
     r = mix(v, 1.0, 0.87) * v.girth
-    high = (SHOULDER[0], SHOULDER[1] - 0.012, SHOULDER[2] - 0.012)
+    inward = mix(v, 0.014, 0.026)
+    high = (SHOULDER[0], SHOULDER[1] - inward, SHOULDER[2] - 0.016)
     upper = _between(SHOULDER, ELBOW, 0.45)
     lower = _between(ELBOW, WRIST, 0.35)
     arm = chain(
         (high, upper, ELBOW, lower, WRIST),
-        (0.064 * r, 0.056 * r, 0.049 * r, 0.048 * r, 0.040 * r),
+        (0.055 * r, 0.051 * r, 0.045 * r, 0.044 * r, 0.038 * r),
         0.02,
     )
     collar = chain(
-        ((-0.014, 0.03, 1.412), (-0.012, 0.11, 1.398), high), (0.05 * r, 0.054 * r, 0.062 * r), 0.03
+        ((-0.014, 0.03, 1.412), (-0.012, 0.10, 1.394), high), (0.044 * r, 0.043 * r, 0.053 * r), 0.03
     )
     start, end = _between(ELBOW, WRIST, 0.84), _between(ELBOW, WRIST, 0.97)
     cuff = round_cone(start, end, 0.043 * r, 0.039 * r)
@@ -94,10 +102,10 @@ def _arm_folds(p: Array) -> Array:
     """Folds across the sleeve: deeper at the elbow and above the cuff."""
     axis = np.subtract(WRIST, SHOULDER) / np.linalg.norm(np.subtract(WRIST, SHOULDER))
     along = (p - SHOULDER) @ axis
-    phase = 2 * np.pi * along / 0.036 + 2.2 * np.sin(28 * p[:, 0] + 9 * along)
+    phase = 2 * np.pi * along / 0.036 + 2.6 * np.sin(40 * p[:, 0] + 9 * along)
     where = np.exp(-(((along - 0.285) / 0.06) ** 2)) + 0.8 * np.exp(-(((along - 0.45) / 0.05) ** 2))
     where *= along < 0.49
-    return 0.0030 * where * np.sin(phase) + 0.0022 * np.exp(-(((along - 0.07) / 0.05) ** 2)) * np.sin(
+    return 0.0019 * where * np.sin(phase) + 0.0018 * np.exp(-(((along - 0.07) / 0.05) ** 2)) * np.sin(
         2 * np.pi * along / 0.045 + 30 * p[:, 0]
     )
 
@@ -110,32 +118,27 @@ def _torso_folds(p: Array) -> Array:
     across = np.sin(2 * np.pi * (z + 0.25 * side) / 0.042 + 1.6 * np.sin(17 * y + 11 * x))
     arm = np.exp(-(((z - 1.24) / 0.06) ** 2)) * np.clip((side - 0.06) / 0.06, 0.0, 1.0)
     slanted = np.sin(2 * np.pi * (z - 0.9 * side) / 0.05 + 9 * x)
-    return 0.0034 * low * across * np.clip(side / 0.05 + 0.35, 0, 1) + 0.0024 * arm * slanted
+    return 0.0026 * low * across * np.clip(side / 0.05 + 0.35, 0, 1) + 0.0024 * arm * slanted
 
 
 def top(v: Variant) -> Shape:
     """The whole top, open at the neck and the wrists."""
-    hem = union(0.0, common(0.006, _band(v, 0.888, 0.935, 0.0035), slab(0.888, 0.935)))
-    body = union(0.006, displaced(torso(v), _torso_folds), hem)
+    hem = common(0.006, grown(torso(v), 0.0035), slab(0.890, 0.938))
+    body = common(0.005, displaced(torso(v), _torso_folds), slab(0.890, 2.0))
+    body = union(0.006, body, hem)
     whole = union(0.035, body, both(0.0, sleeve(v)))
     return minus(0.004, whole, neck_hole(v), _hem_hole(v))
 
 
-def _band(v: Variant, low: float, high: float, by: float) -> Shape:
-    body = torso(v)
-    return lambda p: body(p * [1, 1, 0] + np.clip(p[:, 2:], low + 0.012, high) * [0, 0, 1]) - by
-
-
 def _hem_hole(v: Variant) -> Shape:
-    body = torso(v)
-    return common(0.004, lambda p: body(p + [0, 0, 0.02]) + 0.012, slab(0.80, 0.905))
+    return common(0.004, grown(torso(v), -0.005), slab(0.80, 0.902))
 
 
 def neck_hole(v: Variant) -> Shape:
     """Where the neck comes out: tilted, lower in front."""
-    size = {"crew": 0.064, "roll": 0.058, "shirt": 0.060}[v.neckline] * mix(v, 1.04, 0.96)
+    size = {"crew": 0.061, "roll": 0.058, "shirt": 0.060}[v.neckline] * mix(v, 1.04, 0.96)
     tube = round_cone((0.0, 0.0, 1.42), (0.012, 0.0, 1.56), size, size)
-    return common(0.004, tube, half_space((-0.01, 0.0, 1.415), (0.42, 0.0, -1.0)))
+    return common(0.004, tube, half_space((-0.008, 0.0, 1.422), (-0.42, 0.0, -1.0)))
 
 
 def collar(v: Variant) -> Shape:
@@ -151,7 +154,7 @@ def collar(v: Variant) -> Shape:
         return minus(0.008, common(0.004, roll, half_space((0, 0, 1.40), (0.3, 0, -1.0))), inner)
     if v.neckline == "shirt":
         return _shirt_collar(r)
-    ring = _ring((-0.002, 0.0, 1.428), 0.068 * r, 0.064 * r, 0.0075, 0.40)
+    ring = _ring((-0.006, 0.0, 1.427), 0.064 * r, 0.060 * r, 0.0078, 0.40)
     return union(0.0, ring)
 
 
@@ -186,27 +189,19 @@ def _shirt_collar(r: float) -> Shape:
 def trousers(v: Variant) -> Shape:
     """Both legs, open at the ankles; the waist ends under the top."""
     r = mix(v, 1.0, 0.97) * v.girth
-    w = mix(v, 0.160, 0.170) * v.girth
-    hips = loft(
-        [
-            (0.82, -0.004, 0.095, w * 0.92), (0.88, -0.006, 0.112, w), (0.95, -0.006, 0.108, w * 0.98),
-            (1.02, -0.002, 0.098, w * 0.86), (1.05, 0.0, 0.095, w * 0.82),
-        ],
-        0.02,
-    )  # fmt: skip
-    seat = ellipsoid((-0.058, 0.072, 0.895), (0.078, 0.080, 0.090))
+    hips = common(0.05, grown(torso(v), -0.009), slab(0.80, 0.965))
     leg = chain(
         (
-            (0.000, 0.086, 0.87), (0.012, 0.092, 0.72), (0.014, 0.096, 0.50),
+            (0.000, 0.086, 0.89), (0.012, 0.092, 0.72), (0.014, 0.096, 0.50),
             (-0.004, 0.099, 0.36), (-0.014, 0.102, 0.05),
         ),
-        (0.091 * r, 0.083 * r, 0.064 * r, 0.062 * r, 0.055 * r),
+        (0.090 * r, 0.082 * r, 0.064 * r, 0.062 * r, 0.056 * r),
         0.02,
     )  # fmt: skip
-    hollow = round_cone((-0.014, 0.102, 0.10), (-0.014, 0.102, 0.02), 0.046 * r, 0.051 * r)
-    cut = slab(0.042, 2.0)
+    hollow = round_cone((-0.014, 0.102, 0.10), (-0.014, 0.102, 0.03), 0.047 * r, 0.051 * r)
+    cut = slab(0.062, 2.0)
     left = minus(0.003, common(0.004, displaced(leg, _leg_folds), cut), hollow)
-    return union(0.035, hips, both(0.02, seat), both(0.028, left))
+    return union(0.06, hips, both(0.028, left))
 
 
 def _leg_folds(p: Array) -> Array:
@@ -216,7 +211,7 @@ def _leg_folds(p: Array) -> Array:
     phase = 2 * np.pi * z / 0.05 + 1.7 * np.sin(2 * around + 20 * z)
     where = 0.9 * np.exp(-(((z - 0.47) / 0.06) ** 2)) + np.exp(-(((z - 0.10) / 0.055) ** 2))
     where += 0.7 * np.exp(-(((z - 0.80) / 0.05) ** 2))
-    return 0.0036 * where * np.sin(phase)
+    return 0.0026 * where * np.sin(phase)
 
 
 def shoe_upper() -> Shape:

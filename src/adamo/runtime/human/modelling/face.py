@@ -22,7 +22,7 @@ from adamo.runtime.human.modelling.shapes import (
 from adamo.runtime.human.modelling.variant import Variant
 from adamo.runtime.human.skeleton import INDEX, REST
 
-EYE_RADIUS = 0.0165
+EYE_RADIUS = 0.0182
 PUPIL_DISTANCE_HALF = 0.0335
 EYE = np.array([REST[INDEX["eyelids"]][0], PUPIL_DISTANCE_HALF, REST[INDEX["eyelids"]][2]])
 """Centre of the left eyeball: on the axis of the eyelids."""
@@ -31,7 +31,7 @@ MOUTH_Z = 1.5295
 
 def opening(v: Variant) -> tuple[float, float, float]:
     """Half width of the eye's opening, its height above and below the corners, metres."""
-    return mix(v, 0.0148, 0.0153), mix(v, 0.0062, 0.0078), mix(v, 0.0046, 0.0050)
+    return mix(v, 0.0158, 0.0166), mix(v, 0.0064, 0.0080), mix(v, 0.0050, 0.0054)
 
 
 def skull(v: Variant) -> Shape:
@@ -42,11 +42,11 @@ def skull(v: Variant) -> Shape:
 def head(v: Variant) -> Shape:
     """The head and the neck with eye sockets."""
     f = v.feminine
-    face = ellipsoid((0.026, 0.0, 1.568), (0.060, mix(v, 0.064, 0.0615), 0.086))
+    face = ellipsoid((0.026, 0.0, 1.568), (0.060, mix(v, 0.064, 0.0590), 0.086))
     jaw = mirrored(
         chain(
-            ((0.000, 0.050, 1.556), (0.022, mix(v, 0.0485, 0.0435), 1.518), (0.066, 0.012, 1.492)),
-            (0.020, mix(v, 0.0165, 0.014), mix(v, 0.0165, 0.014)),
+            ((0.000, mix(v, 0.050, 0.046), 1.556), (0.022, mix(v, 0.0480, 0.0375), 1.521), (0.066, 0.012, 1.492)),
+            (0.020, mix(v, 0.0160, 0.0135), mix(v, 0.0165, 0.014)),
             0.015,
         )
     )
@@ -82,14 +82,14 @@ def head(v: Variant) -> Shape:
 
 def nose(v: Variant) -> Shape:
     """Bridge, tip and wings."""
-    n = mix(v, 1.0, 0.86)
+    n = mix(v, 1.0, 0.80)
     bridge = chain(
         ((0.082, 0.0, 1.616), (0.0875, 0.0, 1.600), (0.098, 0.0, 1.572)),
         (0.0085 * n, 0.0075 * n, 0.0085 * n),
         0.01,
     )
     tip = ellipsoid((0.1020 + 0.002 * (1 - v.feminine), 0.0, 1.5635), (0.0112 * n, 0.0105 * n, 0.0095 * n))
-    wings = mirrored(ellipsoid((0.0925, 0.0118 * n, 1.5595), (0.0100, 0.0068 * n, 0.0072)))
+    wings = mirrored(ellipsoid((0.0925, 0.0112 * n, 1.5600), (0.0095, 0.0066 * n, 0.0066)))
     holes = mirrored(ellipsoid((0.0985, 0.0062 * n, 1.5535), (0.0050, 0.0032, 0.0035)))
     return minus(0.003, union(0.008, bridge, tip, wings), holes)
 
@@ -100,22 +100,22 @@ def mouth(v: Variant) -> Shape:
     z = MOUTH_Z
     upper = mirrored(
         chain(
-            ((0.0935, 0.000, z + 0.0040), (0.0930, 0.007, z + 0.0044), (0.0800, 0.0235, z + 0.0030)),
+            ((0.0935, 0.000, z + 0.0040), (0.0930, 0.007, z + 0.0044), (0.0800, 0.0240, z + 0.0045)),
             (0.0046 * full, 0.0048 * full, 0.0022),
             0.004,
         )
     )
     lower = mirrored(
         chain(
-            ((0.0925, 0.000, z - 0.0052), (0.0905, 0.009, z - 0.0046), (0.0805, 0.0225, z + 0.0014)),
+            ((0.0925, 0.000, z - 0.0052), (0.0905, 0.009, z - 0.0046), (0.0805, 0.0230, z + 0.0030)),
             (0.0058 * full, 0.0054 * full, 0.0022),
             0.004,
         )
     )
     line = mirrored(
         chain(
-            ((0.1010, 0.000, z - 0.0002), (0.0985, 0.009, z - 0.0002), (0.0850, 0.0255, z + 0.0030)),
-            (0.0016, 0.0016, 0.0012),
+            ((0.1010, 0.000, z - 0.0002), (0.0985, 0.009, z - 0.0002), (0.0920, 0.018, z + 0.0014), (0.0840, 0.0262, z + 0.0052)),
+            (0.0016, 0.0016, 0.0014, 0.0012),
         )
     )
     return minus(0.003, union(0.004, upper, lower), line)
@@ -180,13 +180,13 @@ def _both_sides(left: Mesh) -> Mesh:
 
 def lashes(v: Variant) -> Mesh:
     """A dark line on the edge of the upper lids, thicker towards the outer corner."""
-    path = lid_edge(v, 15, 1.0, 0.0030, reach=1.12)
+    path = lid_edge(v, 12, 1.0, 0.0030, reach=1.12)
     t = np.linspace(0.0, 1.0, len(path))
     radii = mix(v, 0.0007, 0.00125) * (0.55 + 0.65 * t) * np.clip(np.minimum(t, 1 - t) * 9, 0.05, 1)
-    return _both_sides(tube(path, radii))
+    return _both_sides(tube(path, radii, sides=4))
 
 
-def lids(rows: int = 7, columns: int = 12) -> Mesh:
+def lids(rows: int = 6, columns: int = 11) -> Mesh:
     """The movable upper lids, tucked away when open; they turn about the joint `eyelids`."""
     elevation = np.radians(np.linspace(24.0, 100.0, rows))
     side = np.radians(np.linspace(-82.0, 82.0, columns))
@@ -198,7 +198,7 @@ def lids(rows: int = 7, columns: int = 12) -> Mesh:
     return _both_sides(Mesh(points, _grid(rows, columns)))
 
 
-def eyeballs(rings: int = 9, columns: int = 20) -> tuple[Mesh, Array]:
+def eyeballs(rings: int = 8, columns: int = 16) -> tuple[Mesh, Array]:
     """The front of both eyeballs and their (N, 2) texture coordinates."""
     angle = np.radians(np.linspace(1.0, 88.0, rings))
     around = np.linspace(0.0, 2 * np.pi, columns, endpoint=False)
@@ -228,11 +228,14 @@ def brows(v: Variant) -> Shape:
     """The left brow, to be laid on the face."""
     r = mix(v, 0.0042, 0.0030)
     high = mix(v, 0.0, 0.0025)
-    return chain(
-        (
-            (0.0880, 0.0125, 1.6255), (0.0860, 0.0250, 1.6300 + high),
-            (0.0790, 0.0400, 1.6315 + high), (0.0660, 0.0520, 1.6255 + high),
-        ),
-        (r, r * 1.05, r * 0.85, r * 0.4),
-        0.002,
-    )  # fmt: skip
+    t = np.linspace(0.0, 1.0, 9)
+    y = 0.0130 + 0.0405 * t
+    z = 1.6290 + (0.0052 + high) * np.sin(np.pi * np.clip(t * 0.82, 0, 1)) ** 0.9 - 0.0040 * t**2.5
+    thickness = r * (0.85 + 0.35 * t - 1.0 * t**2.2)
+    points = [(float(a), float(b), float(c)) for a, b, c in zip(brow_depth(y), y, z, strict=True)]
+    return chain(points, [float(a) for a in thickness], 0.001)
+
+
+def brow_depth(y: Array) -> Array:
+    """(N,) how far in front a brow lies, from how far to the side."""
+    return np.interp(y, [0.0125, 0.025, 0.040, 0.052], [0.0880, 0.0860, 0.0790, 0.0660])

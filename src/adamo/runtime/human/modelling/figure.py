@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adamo.geometry import Array
 from adamo.runtime.assets.asset import Material
@@ -71,7 +70,7 @@ class _Sculptor:
         return Figure(self.v.name, garments)
 
     def _head_garments(self) -> tuple[Garment, ...]:
-        mesh = polygonize(self.head, (-0.13, -0.135, 1.34), (0.13, 0.135, 1.73), 0.0019, 8200, 3)
+        mesh = polygonize(self.head, (-0.13, -0.135, 1.34), (0.13, 0.135, 1.73), 0.0018, 11000, 3)
         mesh = without_hidden(mesh, grown(self.hair, 0.0), 0.006)
         mesh = without_hidden(mesh, union(0.0, self.top, clothes.collar(self.v)), 0.006)
         mesh, uvs = _unrolled(mesh)
@@ -91,7 +90,7 @@ class _Sculptor:
 
     def _brows(self) -> Garment:
         shape = mirrored(self._laid_brow())
-        mesh = polygonize(shape, (0.03, -0.065, 1.605), (0.105, 0.065, 1.650), 0.0011, 420, 2)
+        mesh = polygonize(shape, (0.03, -0.065, 1.605), (0.105, 0.065, 1.650), 0.0011, 320, 2)
         picture = paint.palette([_darker(self.v.hair, 0.85)])
         return _plain("brows", mesh, rigid(len(mesh.vertices), "head"), picture, 0.8)
 
@@ -103,7 +102,7 @@ class _Sculptor:
         def distance(p: Array) -> Array:
             # Seen from the front the brow is a band; its depth is that of the skin.
             y, z = p[:, 1], p[:, 2]
-            band = brow(np.column_stack([_brow_depth(y), y, z]))
+            band = brow(np.column_stack([face.brow_depth(y), y, z]))
             return np.maximum(band, np.abs(skin(p)) - reach * np.clip(1 + band / -0.003, 0.35, 1.2))
 
         return distance
@@ -114,7 +113,7 @@ class _Sculptor:
         return _plain("lashes", mesh, rigid(len(mesh.vertices), "eyelids"), picture, 0.7)
 
     def _hair(self) -> Garment:
-        mesh = polygonize(self.hair, (-0.19, -0.15, 1.40), (0.13, 0.15, 1.78), 0.0032, 5600, 2)
+        mesh = polygonize(self.hair, (-0.19, -0.15, 1.40), (0.13, 0.15, 1.78), 0.0028, 4800, 2)
         mesh = without_hidden(mesh, self.head, 0.012)
         normals = mesh.normals()
         light = daylight(mesh.vertices, normals, union(0.0, self.hair, self.head))
@@ -126,7 +125,7 @@ class _Sculptor:
 
     def _hands(self) -> Garment:
         low, high = (-0.03, 0.46, 0.78), (0.12, 0.68, 1.06)
-        left = polygonize(hand(self.v), low, high, 0.0018, 1900, 3)
+        left = polygonize(hand(self.v), low, high, 0.0018, 1480, 3)
         sleeve = clothes.sleeve(self.v)
         left = without_hidden(left, sleeve, 0.004)
         left = Mesh(left.vertices, left.faces)
@@ -137,31 +136,31 @@ class _Sculptor:
         return _garment("hands", mesh, uvs, bound, paint.palette([self.v.skin], 0.7, 0.55), 0.12, 0.2)
 
     def _top(self) -> Garment:
-        mesh = polygonize(self.top, (-0.17, -0.60, 0.86), (0.17, 0.60, 1.50), 0.0055, 6400, 2)
+        mesh = polygonize(self.top, (-0.17, -0.60, 0.86), (0.17, 0.60, 1.50), 0.0055, 4700, 2)
         mesh = without_hidden(mesh, union(0.0, self.trousers, grown(self.head, -0.006)), 0.012)
         trim = _trim_of_top(mesh.vertices)
         return self._cloth("top", mesh, [self.v.top, self.v.trim], trim)
 
     def _collar(self) -> Garment:
         shape = clothes.collar(self.v)
-        mesh = polygonize(shape, (-0.12, -0.12, 1.37), (0.12, 0.12, 1.52), 0.0028, 1500, 3)
+        mesh = polygonize(shape, (-0.12, -0.12, 1.37), (0.12, 0.12, 1.52), 0.0026, 900, 3)
         mesh = without_hidden(mesh, self.top, 0.008)
         return self._cloth("collar", mesh, [self.v.trim], None)
 
     def _trousers(self) -> Garment:
         low, high = (-0.17, -0.22, 0.03), (0.15, 0.22, 1.07)
-        mesh = polygonize(self.trousers, low, high, 0.0060, 4600, 2)
+        mesh = polygonize(self.trousers, low, high, 0.0060, 3400, 2)
         shoes = mirrored(clothes.shoe_upper())
         mesh = without_hidden(mesh, union(0.0, grown(self.top, -0.006), grown(shoes, -0.01)), 0.014)
         return self._cloth("trousers", mesh, [self.v.trousers], None)
 
     def _shoes(self) -> Garment:
-        upper = polygonize(clothes.shoe_upper(), (-0.1, 0.03, -0.01), (0.22, 0.18, 0.13), 0.004, 900, 3)
-        sole = polygonize(clothes.shoe_sole(), (-0.11, 0.03, -0.02), (0.23, 0.18, 0.06), 0.004, 560, 1)
-        bars = polygonize(clothes.laces(), (0.0, 0.07, 0.05), (0.11, 0.14, 0.10), 0.002, 400, 2)
+        upper = polygonize(clothes.shoe_upper(), (-0.1, 0.03, -0.01), (0.22, 0.18, 0.13), 0.004, 640, 3)
+        sole = polygonize(clothes.shoe_sole(), (-0.11, 0.03, -0.02), (0.23, 0.18, 0.06), 0.004, 300, 1)
+        bars = polygonize(clothes.laces(), (0.0, 0.07, 0.05), (0.11, 0.14, 0.10), 0.002, 200, 2)
         upper = without_hidden(upper, both(0.0, clothes.shoe_sole()), 0.006)
         left = merged(upper, sole, bars)
-        part = np.repeat([0, 1, 2], [len(m.vertices) for m in (upper, sole, bars)])
+        part = np.repeat([1 / 6, 3 / 6, 5 / 6], [len(m.vertices) for m in (upper, sole, bars)])
         mesh = merged(left, Mesh(left.vertices * [1, -1, 1], left.faces[:, ::-1]))
         colours = [self.v.shoes, self.v.soles, _darker(self.v.shoes, 0.62)]
         return self._cloth("shoes", mesh, colours, np.tile(part, 2))
@@ -171,12 +170,11 @@ class _Sculptor:
         name: str,
         mesh: Mesh,
         colours: Sequence[tuple[int, int, int]],
-        part: NDArray[np.int64] | None,
+        across: Array | None,
     ) -> Garment:
-        """Shade a garment by what surrounds it; `part` chooses each vertex's colour."""
+        """Shade a garment by what surrounds it; `across` (N,) chooses the colour."""
         light = daylight(mesh.vertices, mesh.normals(), self.everything)
-        column = np.zeros(len(light), int) if part is None else part
-        u = (column + 0.5) / len(colours)
+        u = np.full(len(light), 0.5) if across is None else across
         kinds = None
         if name == "trousers":
             kinds = ("pelvis", "spine", "thigh", "shin")
@@ -189,18 +187,18 @@ class _Sculptor:
         return _garment(name, mesh, uvs, bind(mesh.vertices, kinds), picture, 0.06, 0.1)
 
 
-def _trim_of_top(p: Array) -> NDArray[np.int64]:
-    """1 on the cuffs and the hem, 0 elsewhere."""
+def _trim_of_top(p: Array) -> Array:
+    """(N,) texture coordinate: above 0.5 on the cuffs and the hem.
+
+    It changes steadily with the distance from their edge, so that the edge is sharp in between the
+    vertices too.
+    """
     elbow, wrist = np.array(clothes.ELBOW), np.array(clothes.WRIST)
     q = np.column_stack([p[:, 0], np.abs(p[:, 1]), p[:, 2]]) - elbow
     along = q @ (wrist - elbow) / ((wrist - elbow) @ (wrist - elbow))
-    cuff = (along > 0.84) & (np.abs(p[:, 1]) > 0.35)
-    hem = (p[:, 2] < 0.936) & (np.abs(p[:, 1]) < 0.25)
-    return (cuff | hem).astype(np.int64)
-
-
-def _brow_depth(y: Array) -> Array:
-    return np.interp(y, [0.0125, 0.025, 0.040, 0.052], [0.0880, 0.0860, 0.0790, 0.0660])
+    cuff = np.where(np.abs(p[:, 1]) > 0.35, (along - 0.84) * np.linalg.norm(wrist - elbow), -1.0)
+    hem = np.where(np.abs(p[:, 1]) < 0.25, 0.938 - p[:, 2], -1.0)
+    return np.clip(0.5 + np.maximum(cuff, hem) / 0.2, 0.02, 0.98)
 
 
 def _darker(colour: tuple[int, int, int], by: float) -> tuple[int, int, int]:

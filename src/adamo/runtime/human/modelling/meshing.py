@@ -39,7 +39,8 @@ def vertex_normals(vertices: Array, faces: NDArray[np.int64]) -> Array:
     for corner in range(3):
         np.add.at(total, same[faces[:, corner]], across)
     normals = total[same]
-    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.where(length > 1e-12, normals / np.maximum(length, 1e-12), [0.0, 0.0, 1.0])
 
 
 def polygonize(

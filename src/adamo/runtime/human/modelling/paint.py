@@ -77,11 +77,11 @@ def lips_mask(v: Variant, p: Array) -> Array:
     """(H, W) how much of each texel is lip."""
     y, z = np.abs(p[..., 1]), p[..., 2] - MOUTH_Z
     full = mix(v, 0.85, 1.08)
-    t = np.clip(y / 0.0250, 0.0, 1.0)
+    t = np.clip(y / 0.0258, 0.0, 1.0)
     bow = 0.0016 * np.exp(-((y / 0.0035) ** 2))
-    top = (0.0088 * full) * (1 - t**2.0) + 0.0032 * t - bow
-    bottom = -(0.0108 * full) * (1 - t**2.2) + 0.0024 * t
-    inside = np.maximum(np.maximum(z - top, bottom - z), y - 0.0250)
+    top = (0.0088 * full) * (1 - t**2.0) + 0.0055 * t**1.5 - bow
+    bottom = -(0.0108 * full) * (1 - t**2.2) + 0.0046 * t**1.5
+    inside = np.maximum(np.maximum(z - top, bottom - z), y - 0.0258)
     return _soft(inside, 0.0016) * (p[..., 0] > 0.05)
 
 
@@ -107,9 +107,9 @@ def head_picture(v: Variant, surface: Shape, around: Shape) -> Picture:
     tint(hair, scalp)
     tint(lips, 0.9 * lips_mask(v, p))
     y, z = np.abs(p[..., 1]), p[..., 2] - MOUTH_Z
-    line = np.abs(z - 0.0030 * np.clip(y / 0.0255, 0, 1) ** 2) - 0.0004
+    line = np.abs(z - 0.0052 * np.clip(y / 0.0262, 0, 1) ** 2) - 0.0004
     tint(lips * 0.42, 0.85 * _soft(np.maximum(line, y - 0.0258), 0.0012) * (p[..., 0] > 0.05))
-    nostril = _spot(p, (0.0985, 0.0062 * mix(v, 1, 0.86), 1.5535), 0.0042)
+    nostril = _spot(p, (0.0985, 0.0062 * mix(v, 1, 0.80), 1.5535), 0.0042)
     tint(skin * 0.35, 0.8 * nostril * (p[..., 2] < 1.5570))
     shade = 0.60 + 0.40 * light
     colour *= shade[..., None] ** np.array([0.75, 1.0, 1.1])
@@ -139,18 +139,18 @@ def eye_picture(v: Variant) -> Picture:
     colour *= (1 - 0.30 * np.clip(r - 0.3, 0, 1) - 0.32 * np.clip((y - 0.12) / 0.5, 0, 1))[..., None]
     iris = np.array(v.iris) / 255.0
     rays = 1 + 0.16 * np.sin(angle * 23) * np.sin(angle * 7 + 1) + 0.55 * np.clip(-y, 0, 1)
-    size = 0.385
+    size = 0.415
     disc = np.clip((size - r) / 0.03, 0, 1)
     inner = iris * (0.75 + 0.6 * np.clip(1 - r / size, 0, 1))[..., None] * rays[..., None]
-    inner *= (1 - 0.55 * np.clip((r - 0.29) / 0.09, 0, 1) - 0.25 * np.clip((y + 0.05) / 0.35, 0, 1))[..., None]
+    inner *= (1 - 0.55 * np.clip((r - 0.32) / 0.09, 0, 1) - 0.25 * np.clip((y + 0.05) / 0.35, 0, 1))[..., None]
     colour += (inner - colour) * disc[..., None]
-    colour *= (1 - 0.95 * np.clip((0.165 - r) / 0.03, 0, 1))[..., None]
+    colour *= (1 - 0.95 * np.clip((0.18 - r) / 0.03, 0, 1))[..., None]
     glint = np.clip((0.075 - np.hypot(x - 0.13, y - 0.15)) / 0.03, 0, 1)
     colour += (0.97 - colour) * glint[..., None]
     return _bytes(colour)
 
 
-def palette(colours: list[Colour], warmth: float = 0.9, darkest: float = 0.5) -> Picture:
+def palette(colours: list[Colour], warmth: float = 0.9, darkest: float = 0.55) -> Picture:
     """One column of 16 texels for each colour, lighter upward: v is how open the place is."""
     light = np.linspace(1.0, 0.0, 64)[:, None, None]
     shade = darkest + (1 - darkest) * light

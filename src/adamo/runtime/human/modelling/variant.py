@@ -40,9 +40,9 @@ PEOPLE: dict[str, Variant] = {
     person.name: person
     for person in (
         Variant(
-            name="mara", skin=(224, 168, 134), lips=(190, 98, 88), hair=(88, 50, 30),
+            name="mara", skin=(224, 168, 134), lips=(190, 98, 88), hair=(76, 46, 30),
             iris=(104, 74, 40), top=(202, 142, 44), trim=(178, 118, 32), trousers=(78, 66, 60),
-            shoes=(150, 74, 46), soles=(70, 52, 42), hair_style="bob", neckline="crew",
+            shoes=(124, 70, 48), soles=(70, 52, 42), hair_style="bob", neckline="crew",
             feminine=1.0,
         ),
         Variant(

@@ -1,0 +1,61 @@
+"""Reaching: the hand meets a target anywhere from the floor to the top of a shelf."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from adamo.geometry import Array
+from adamo.runtime.human.anatomy import eyes, fingers, mirrored, turned
+from adamo.runtime.human.ik import arm_to, plant_feet
+from adamo.runtime.human.postures import gazing
+from adamo.runtime.human.rotations import blended
+from adamo.runtime.human.skeleton import INDEX, Pose, joint_frames
+from adamo.runtime.human.stretch import Stretch, stretch_to
+
+_MIRROR = np.array([1.0, -1.0, 1.0])
+
+
+def reaching(pose: Pose, target: Array, hand: str = "r") -> Pose:
+    """Bring the grip point of a hand to a target, leaning, crouching or stretching as needed.
+
+    Args:
+        pose: A body that stands.
+        target: (3,) in the body frame, metres: 0.25 to 0.9 m from the body's axis, within 30
+            degrees of straight ahead, from the floor to 2.07 m.
+        hand: "l" or "r".
+    """
+    if hand == "l":
+        return mirrored(reaching(mirrored(pose), target * _MIRROR))
+    stretch = stretch_to(*(float(v) for v in target))
+    bent = looking_at(stretched(pose, stretch), target)
+    return arm_to(turned(bent, open_hand()), target)[0]
+
+
+def open_hand(hand: str = "r") -> dict[str, Array]:
+    """Local rotations of a hand that is about to grasp."""
+    return {f"hand_{hand}": np.eye(3)} | fingers(hand, np.radians(8.0))
+
+
+def stretched(
+    pose: Pose, stretch: Stretch, weight: float = 1.0, stepped: float = 1.0
+) -> Pose:
+    """Trunk, hips and legs bent by a share of a stretch; the idle arm hangs by its weight.
+
+    Args:
+        pose: A body that stands.
+        stretch: How to bend.
+        weight: How much of it, 0 to 1.
+        stepped: How far the steps forward are done, 0 to 1.
+    """
+    bent = stretch.applied(pose, weight)
+    bent, _ = plant_feet(bent, stretch.feet(weight, stepped))
+    _, rotations = joint_frames(bent)
+    trunk = rotations[INDEX["chest"]]
+    hang = blended(np.eye(3), trunk.T, 0.75 * weight)
+    idle = {n: hang @ bent.rotations[INDEX[n]] for n in ("upper_arm_l",)}
+    return turned(bent, idle)
+
+
+def looking_at(pose: Pose, target: Array) -> Pose:
+    """Eyes on a target, (3,) in the body frame."""
+    return gazing(pose, target - eyes(pose), torso=0.0)
