@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -40,6 +41,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder for the pictures")
     parser.add_argument("--azimuth", type=float, default=AZIMUTH_DEG, help="degrees")
     options = parser.parse_args(arguments)
+    # Read when MuJoCo is imported, which happens below.
+    os.environ.setdefault("MUJOCO_GL", "egl")
     everything = [*catalog.OBJECTS, *catalog.FURNITURE]
     names = everything if options.all or not options.names else options.names
     options.out.mkdir(parents=True, exist_ok=True)

@@ -154,7 +154,10 @@ def render(name: str, shots: Sequence[str]) -> dict[str, NDArray[np.uint8]]:
             mujoco.mj_forward(model, data)
             side_m = 0.25 if shot == "hand" else 0.0
             camera.lookat[:] = (0.0, side_m, height_m)
-            camera.azimuth, camera.elevation = azimuth + 180 if shot == "side" else azimuth, elevation
+            camera.azimuth, camera.elevation = (
+                azimuth + 180 if shot == "side" else azimuth,
+                elevation,
+            )
             camera.distance = extent_m / 2 / math.tan(math.radians(11.0))
             renderer.update_scene(data, camera)
             pictures[shot] = np.asarray(renderer.render(), dtype=np.uint8).copy()

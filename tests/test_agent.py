@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import pytest
 
@@ -44,7 +44,7 @@ class Recorder:
         return self._answer(len(self.prompts) - 1)
 
 
-def says(text: str, *calls: tuple[str, dict[str, object] | None]) -> AIMessage:
+def says(text: str, *calls: tuple[str, Mapping[str, object] | None]) -> AIMessage:
     made = tuple(ToolCall(f"c{i}", name, args) for i, (name, args) in enumerate(calls))
     return AIMessage(text, made)
 
@@ -86,8 +86,8 @@ def test_the_prompt_is_the_papers(engine: BuiltinEngine) -> None:
     assert [type(m) for m in third[6:]] == [AIMessage, ToolMessage]
     frames = [m for m in third if isinstance(m, HumanMessage)]
     assert all(isinstance(m.parts[-1], ImagePart) for m in frames)
-    assert "hand: Plate_57" in third[1].text  # type: ignore[union-attr]
-    assert "hand: empty" in second[1].text  # type: ignore[union-attr]
+    assert "hand: Plate_57" in third[1].text
+    assert "hand: empty" in second[1].text
     assert model.tools == ["Look", "Walk", "Pick", "Drop"]
 
 
@@ -96,7 +96,7 @@ def test_the_text_describes_the_latest_frame(engine: BuiltinEngine) -> None:
     answers = [says("away", away), says("walk", ("Walk", {"x": -1, "y": -1, "z": 0})), says("x")]
     model = Recorder(lambda i: Reply(answers[i]))
     run(engine, model)
-    states = [prompt[1].text for prompt in model.prompts]  # type: ignore[union-attr]
+    states = [prompt[1].text for prompt in model.prompts]
     assert "Plate_57" in states[0]
     assert "## Visible objects\nnone" in states[1]
     assert "## Visible objects\nnone" in states[2]
@@ -122,7 +122,7 @@ def test_only_the_first_of_several_calls_is_executed(engine: BuiltinEngine) -> N
     ],
 )
 def test_mistakes_become_feedback_and_the_loop_goes_on(
-    engine: BuiltinEngine, call: tuple[str, dict[str, object] | None], code: Code
+    engine: BuiltinEngine, call: tuple[str, Mapping[str, object] | None], code: Code
 ) -> None:
     ended, trajectory = run(engine, ScriptedModel("s", [says("try", call), says("pick", PICK)]))
     assert trajectory.acts[0].feedback.outcome is Outcome.REFUSED

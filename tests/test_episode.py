@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -121,9 +122,7 @@ def test_the_same_seed_twice_is_the_same_episode(script: Path, engine: BuiltinEn
     assert results[0].final == results[1].final
 
 
-def test_a_folder_is_never_overwritten(
-    script: Path, tmp_path: Path, engine: BuiltinEngine
-) -> None:
+def test_a_folder_is_never_overwritten(script: Path, tmp_path: Path, engine: BuiltinEngine) -> None:
     recorded(script, tmp_path / "run", engine)
     with pytest.raises(RecordError, match="already holds an episode"):
         recorded(script, tmp_path / "run", engine)
@@ -151,7 +150,7 @@ def test_an_instruction_without_a_task_is_not_scored(engine: BuiltinEngine) -> N
         ({"task": "T1", "text_form": "long"}, "full"),
     ],
 )
-def test_wrong_settings_start_nothing(settings: dict[str, object], part: str) -> None:
+def test_wrong_settings_start_nothing(settings: dict[str, Any], part: str) -> None:
     with pytest.raises(ConfigError) as caught:
         adamo.run_episode(**settings)
     assert part in str(caught.value)
@@ -159,9 +158,7 @@ def test_wrong_settings_start_nothing(settings: dict[str, object], part: str) ->
 
 def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
     """kill -9 in the middle: what was recorded reads back and replays to the same hashes."""
-    steps = [
-        {"tool": "Look", "args": {"x": 0.1 * (i % 9), "y": -1.0, "z": 0.8}} for i in range(55)
-    ]
+    steps = [{"tool": "Look", "args": {"x": 0.1 * (i % 9), "y": -1.0, "z": 0.8}} for i in range(55)]
     script = tmp_path / "long.json"
     script.write_text(json.dumps(steps))
     folder = tmp_path / "run"
@@ -184,9 +181,7 @@ def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
     assert adamo.replay_episode(folder).mismatches == ()
 
 
-def test_damaged_records_are_named(
-    script: Path, tmp_path: Path, engine: BuiltinEngine
-) -> None:
+def test_damaged_records_are_named(script: Path, tmp_path: Path, engine: BuiltinEngine) -> None:
     with pytest.raises(RecordError, match="is no run folder"):
         read_manifest(tmp_path)
     folder = tmp_path / "run"

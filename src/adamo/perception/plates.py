@@ -16,22 +16,23 @@ from PIL import Image, ImageDraw, ImageFont
 Colour = tuple[int, int, int]
 
 PALETTE: tuple[Colour, ...] = (
-    (64, 224, 255),
+    (255, 160, 64),
     (255, 92, 208),
     (150, 255, 70),
     (255, 236, 64),
-    (150, 150, 255),
-    (255, 255, 255),
+    (255, 140, 170),
+    (240, 215, 120),
     (30, 240, 150),
     (255, 120, 120),
-    (80, 165, 255),
+    (190, 255, 60),
     (205, 110, 255),
     (214, 255, 160),
     (255, 185, 230),
     (140, 245, 225),
     (255, 205, 120),
 )
-"""Bright enough to stand out on wood, and far from its brown."""
+"""Bright enough to stand out on wood, and far from its brown. None is blue or white: instructions ask
+for blue things and white parts, and a drawn line must not pass for either."""
 
 INK: Colour = (16, 18, 22)
 """Of plates and of the casing of lines."""

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-
 from adamo.action import Code, Outcome
 from adamo.engine import BodyReport, ObjectState, SceneInfo, WorldState
 from adamo.geometry import Array, Camera, Vec3

@@ -24,7 +24,8 @@ def final_answer(plan: Plan, memory: Memory) -> str:
         if bad:
             missed.append(f"{_and(bad)} not {_place(goal)}, {_why(goal, index, memory)}")
         if not jobs:
-            missed.append(f"I could not find {goal.target.text}")
+            what = "anything that is one of" if goal.target.every else ""
+            missed.append(f"I could not find {what} {goal.target.text}".replace("  ", " "))
     if not missed:
         return f"Done: {'; '.join(done)}."
     if not done:

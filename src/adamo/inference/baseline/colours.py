@@ -28,16 +28,38 @@ _PALE = 42
 """Saturation below which a colour has no hue."""
 _CREAM = 75
 """Saturation up to which a bright yellowish colour is cream, so white."""
-_WHITE_FROM = 165
+_WHITE_FROM = (145, 165)
+"""White is at least this bright, and need not be brighter: in between the light decides."""
+_SHADE = 0.68
+"""Brightness of white in the shade, as a share of white in the light."""
 _BROWN_BELOW = 140
 
 
-def shares(crop: NDArray[np.uint8], mask: NDArray[np.bool_]) -> Mapping[str, float]:
+def white_level(picture: NDArray[np.uint8], things: NDArray[np.bool_]) -> float:
+    """From which brightness on a colourless pixel is white, in the light of this picture.
+
+    Args:
+        picture: (H, W, 3) BGR.
+        things: (H, W), pixels of objects; the brightest colourless ones tell the light.
+    """
+    pixels = picture[things].astype(np.int16)
+    if not len(pixels):
+        return float(_WHITE_FROM[1])
+    high, low = pixels.max(axis=1), pixels.min(axis=1)
+    pale = high[(high - low) * 255 < _PALE * high]
+    brightest = float(np.percentile(pale, 97)) if len(pale) > 50 else 255.0
+    return float(np.clip(_SHADE * brightest, *_WHITE_FROM))
+
+
+def shares(
+    crop: NDArray[np.uint8], mask: NDArray[np.bool_], white_from: float = _WHITE_FROM[1]
+) -> Mapping[str, float]:
     """The share of each named colour.
 
     Args:
         crop: (H, W, 3) BGR picture.
         mask: (H, W), which pixels count.
+        white_from: Least brightness of white, see `white_level`.
 
     Returns:
         Shares that sum to 1, by name; colours that do not occur are left out.
@@ -54,7 +76,7 @@ def shares(crop: NDArray[np.uint8], mask: NDArray[np.bool_]) -> Mapping[str, flo
     pale = saturation < _PALE
     codes[pale] = _CODE["grey"]
     cream = (saturation < _CREAM) & (hue >= 10) & (hue < 40)
-    codes[(pale | cream) & (value >= _WHITE_FROM)] = _CODE["white"]
+    codes[(pale | cream) & (value >= white_from)] = _CODE["white"]
     codes[(value < _BLACK_BELOW) | (pale & (value < _BLACK_BELOW + 15))] = _CODE["black"]
     counts = np.bincount(codes, minlength=len(_NAMES))
     return {

@@ -10,6 +10,7 @@ from adamo.inference.baseline.answering import final_answer
 from adamo.inference.baseline.beliefs import anchor_of, current_job, up_to_date
 from adamo.inference.baseline.goals import Goal, Plan, Relation
 from adamo.inference.baseline.memory import Job, Memory, Status, Thing, write
+from adamo.inference.baseline.prototypes import class_of
 from adamo.inference.baseline.reading import Prompt
 
 _MAX_ASIDE = 4
@@ -134,7 +135,7 @@ def _advance(prompt: Prompt, plan: Plan, goal: Goal, job: Job, memory: Memory) -
     if job.tries and prompt.event and prompt.event.name == "Pick":
         return _approach(job, memory)
     return _Move(
-        f"{job.tag} is {_fit_words(job, memory)} '{goal.target.text}'; it must be {_wish(goal)}.",
+        f"{job.tag} {_fit_words(goal, job, memory)}; it must be {_wish(goal)}.",
         f"pick {job.tag}.",
         "Pick",
         (("object", job.tag),),
@@ -241,11 +242,17 @@ def _wish(goal: Goal) -> str:
             return f"put near {goal.anchor.text if goal.anchor else 'it'}"
 
 
-def _fit_words(job: Job, memory: Memory) -> str:
-    fit = memory.fits.get(("goal", job.goal), {}).get(job.tag, 0.0)
-    if fit >= 0.95:
-        return "surely"
-    return "probably" if fit >= 0.5 else "my best guess for"
+def _fit_words(goal: Goal, job: Job, memory: Memory) -> str:
+    """How sure it is that this thing is meant, and by what."""
+    target, fit = goal.target, memory.fits.get(("goal", job.goal), {}).get(job.tag, 0.0)
+    if target.ids or (target.classes and class_of(job.tag) in target.classes):
+        how = "by its tag"
+    elif target.by_looks or target.classes:
+        how = "by its looks, its volume and what such things usually are"
+    else:
+        how = "by the listed volumes"
+    sure = "fits" if fit >= 0.95 else "probably fits" if fit >= 0.5 else "is my best guess for"
+    return f"{sure} '{target.text}', {how}"
 
 
 def _evidence(prompt: Prompt, memory: Memory) -> str:

@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo.geometry import Camera
-from adamo.inference.baseline.colours import shares
+from adamo.inference.baseline.colours import shares, white_level
 from adamo.inference.baseline.drawn import INK_BELOW, Mask, Picture, PixelBox, clipped, drawn_over
 from adamo.inference.baseline.print_marks import print_share
 from adamo.inference.baseline.reading import Listed, Prompt
 from adamo.inference.baseline.sight import Sight
 from adamo.inference.baseline.view import camera_of
+
+Masks = Mapping[str, tuple[Mask, float]]
 
 _RING_PX = 12
 """Width of the frame around a box that shows what is behind the object, at 1080 lines."""
@@ -57,35 +59,56 @@ def _looked_at(
     picture: Picture = np.asarray(decoded, np.uint8)
     boxes = [thing.box_px for thing in things if thing.box_px]
     drawn = drawn_over(picture, boxes, points, camera)
-    return {
-        thing.tag: _look_at(picture, drawn, thing, things, camera)
-        for thing in things
-        if thing.box_px
-    }
+    visible = [thing for thing in things if thing.box_px]
+    masks = {t.tag: _solid(picture, drawn, t, things) for t in visible}
+    white = _white(picture, masks, visible)
+    return {t.tag: _look_at(picture, masks[t.tag], t, white, camera) for t in visible}
+
+
+def _solid(
+    picture: Picture, drawn: Mask, thing: Listed, things: tuple[Listed, ...]
+) -> tuple[Mask, float]:
+    """The pixels of a box that show its object, and how much looks like what is behind."""
+    assert thing.box_px is not None
+    area = clipped(thing.box_px, drawn)
+    own = _own_part(thing, things, drawn[area].shape) & ~drawn[area]
+    if not own.any():
+        return own, 0.0
+    behind = _behind(picture, drawn, thing.box_px, picture[area])
+    solid = own & ~behind
+    clear = float((own & behind).sum() / own.sum())
+    return (solid if solid.sum() >= _LEAST_PIXELS else own), clear
+
+
+def _white(picture: Picture, masks: Masks, things: list[Listed]) -> float:
+    everything = np.zeros(picture.shape[:2], bool)
+    for thing in things:
+        assert thing.box_px is not None
+        everything[clipped(thing.box_px, everything)] |= masks[thing.tag][0]
+    return white_level(picture, everything)
 
 
 def _look_at(
-    picture: Picture, drawn: Mask, thing: Listed, things: tuple[Listed, ...], camera: Camera | None
+    picture: Picture,
+    mask: tuple[Mask, float],
+    thing: Listed,
+    white_from: float,
+    camera: Camera | None,
 ) -> Sight:
     assert thing.box_px is not None
     left, top, right, bottom = thing.box_px
-    area = clipped(thing.box_px, drawn)
-    crop = picture[area]
-    if crop.size == 0:
+    solid, clear = mask
+    if not solid.any():
         return Sight(0)
-    own = _own_part(thing, things, crop.shape[:2]) & ~drawn[area]
-    behind = _behind(picture, drawn, thing.box_px, crop)
-    solid = own & ~behind
+    crop = picture[clipped(thing.box_px, picture)]
     width_m, extent_m, pitch = _metric(thing, camera)
     height, width = picture.shape[:2]
-    if solid.sum() < _LEAST_PIXELS:
-        solid = own
     return Sight(
         pixels=int(solid.sum()),
-        colours=shares(crop, solid),
+        colours=shares(crop, solid, white_from),
         text=print_share(crop, solid),
         roundness=_roundness(solid),
-        clear=float((own & behind).sum() / max(1, own.sum())),
+        clear=clear,
         width_m=width_m,
         extent_m=extent_m,
         pitch_rad=pitch,

@@ -19,8 +19,15 @@ if TYPE_CHECKING:
     from PIL.Image import Image
     from PIL.ImageDraw import ImageDraw
 
-WORDS_ARC_DEG = 86.0
-"""Widest arc that words may cover: what a person in front can read without turning the thing."""
+WORDS_ARC_DEG = 77.0
+"""Widest arc that words may cover: what a person in front can read without turning the thing.
+
+Below a quarter turn, so that four prints fit around with a gap between them: then one of them
+faces a person in front, behind or at either side.
+"""
+
+PAPER: Colour = (214, 213, 206)
+"""White of a label. Lit, it must not be lighter than the light itself."""
 
 _OVERSAMPLING = 2
 
@@ -64,11 +71,11 @@ class Label:
     lines: tuple[Line, ...]
     bands: tuple[Band, ...] = ()
     motifs: tuple[Motif, ...] = ()
-    panels: int = 3
+    panels: int = 4
     """Times the print is repeated around."""
 
 
-def wrap(label: Label, girth_m: float, height_m: float, pixels_per_m: float = 9000.0) -> Picture:
+def wrap(label: Label, girth_m: float, height_m: float, pixels_per_m: float = 6000.0) -> Picture:
     """Draw a label for the whole way around.
 
     Args:
@@ -78,7 +85,7 @@ def wrap(label: Label, girth_m: float, height_m: float, pixels_per_m: float = 90
         pixels_per_m: Resolution.
 
     Returns:
-        Picture whose panels are centred at u = (i + 0.5) / panels.
+        Picture with one of its panels centred at u = 0.5.
     """
     from PIL import Image, ImageDraw
 
@@ -97,7 +104,8 @@ def wrap(label: Label, girth_m: float, height_m: float, pixels_per_m: float = 90
         low, high = _rows(line.v, height)
         _print(panel, line, round(readable * line.width), (high, low))
     small = panel.resize((width // _OVERSAMPLING, height // _OVERSAMPLING), Image.Resampling.BOX)
-    return np.tile(np.asarray(small, dtype=np.uint8), (1, label.panels, 1))
+    around = np.tile(np.asarray(small, dtype=np.uint8), (1, label.panels, 1))
+    return np.roll(around, 0 if label.panels % 2 else small.width // 2, axis=1)
 
 
 def _rows(v: tuple[float, float], height: int) -> tuple[int, int]:
@@ -106,47 +114,56 @@ def _rows(v: tuple[float, float], height: int) -> tuple[int, int]:
 
 
 def _print(panel: Image, line: Line, width: int, rows: tuple[int, int]) -> None:
-    """Set one line in the middle of the panel, stretched to its place."""
+    """Set one line in the middle of the panel, stretched to its place.
+
+    Letters are spaced: set as close as usual, they melt into each other across a room.
+    """
     from PIL import Image, ImageDraw, ImageFont
 
     font = ImageFont.load_default(size=160)
-    bold = 5
-    left, top, right, bottom = ImageDraw.Draw(panel).textbbox(
-        (0, 0), line.text, font=font, stroke_width=bold
-    )
-    mask = Image.new("L", (int(right - left), int(bottom - top)), 0)
-    ImageDraw.Draw(mask).text((-left, -top), line.text, font=font, fill=255, stroke_width=bold)
+    bold, space = 7, 22
+    canvas = Image.new("L", (200 * len(line.text), 320), 0)
+    pen = ImageDraw.Draw(canvas)
+    x = 20.0
+    for letter in line.text:
+        pen.text((x, 40), letter, font=font, fill=255, stroke_width=bold)
+        x += font.getlength(letter) + space
+    mask = canvas.crop(canvas.getbbox())
     mask = mask.resize((width, rows[1] - rows[0]), Image.Resampling.LANCZOS)
     panel.paste(line.ink, ((panel.width - width) // 2, rows[0]), mask)
 
 
 def tomato(canvas: ImageDraw, x: float, y: float, size: float) -> None:
     """A red tomato with green leaves."""
-    r = size / 2
+    r, green = size / 2, (44, 112, 38)
     canvas.ellipse((x - 1.08 * r, y - 0.75 * r, x + 1.08 * r, y + r), fill=(200, 36, 26))
     canvas.ellipse((x - 0.75 * r, y - 0.45 * r, x - 0.35 * r, y - 0.05 * r), fill=(226, 84, 62))
-    crown = [(x, y - 0.72 * r)]
-    for i in range(5):
-        angle = np.pi * (0.02 + 0.24 * i)
-        tip = (x + 0.72 * r * np.cos(angle), y - 0.72 * r + 0.34 * r * np.sin(angle))
-        crown += [tip, (x + 0.16 * r * np.cos(angle + 0.3), y - 0.62 * r)]
-    canvas.polygon(crown, fill=(54, 120, 42))
-    canvas.rectangle((x - 0.06 * r, y - r, x + 0.06 * r, y - 0.7 * r), fill=(54, 120, 42))
+    top = y - 0.68 * r
+    for angle in np.deg2rad((-12, 32, 90, 148, 192)):
+        along = np.array((np.cos(angle), 0.6 * np.sin(angle)))
+        across = 0.16 * r * np.array((-along[1], along[0])) / np.hypot(*along)
+        tip, middle = 0.62 * r * along, 0.25 * r * along
+        leaf = [(0.0, 0.0), middle + across, tip, middle - across]
+        canvas.polygon([(x + dx, top + dy) for dx, dy in leaf], fill=green)
+    canvas.rectangle((x - 0.06 * r, y - r, x + 0.06 * r, top), fill=green)
 
 
 def peanut(canvas: ImageDraw, x: float, y: float, size: float) -> None:
     """A peanut in its shell, lying."""
-    r = size / 2
-    shell, line = (176, 116, 52), (120, 72, 28)
-    for side in (-1, 1):
-        cx = x + side * 0.85 * r
-        canvas.ellipse((cx - r, y - 0.8 * r, cx + r, y + 0.8 * r), fill=shell)
-    canvas.rectangle((x - 0.5 * r, y - 0.55 * r, x + 0.5 * r, y + 0.55 * r), fill=shell)
-    pen = max(1, round(size / 24))
-    for offset in (-0.35, 0.0, 0.35):
-        canvas.line((x - 1.5 * r, y + offset * r, x + 1.5 * r, y + offset * r), line, pen)
-    for offset in (-1.2, -0.6, 0.6, 1.2):
-        canvas.line((x + offset * r, y - 0.6 * r, x + offset * r, y + 0.6 * r), line, pen)
+    shell, line = (206, 142, 66), (128, 78, 30)
+    along = np.linspace(-1.0, 1.0, 48)
+    ends = np.sqrt(1.0 - np.abs(along) ** 3.2)
+    half = size / 2 * ends * (1.0 - 0.42 * np.exp(-((along / 0.3) ** 2)))
+    outline = [*zip(along, half, strict=True), *zip(along[::-1], -half[::-1], strict=True)]
+    points = [(x + 1.05 * size * u, y + v) for u, v in outline]
+    canvas.polygon(points, fill=shell)
+    pen = max(1, round(size / 22))
+    for share in (-0.5, 0.0, 0.5):
+        ridge = [(x + 1.05 * size * u, y + share * v) for u, v in zip(along, half, strict=True)]
+        canvas.line(ridge, line, pen)
+    for i in range(7, 43, 5):
+        cx, reach = x + 1.05 * size * along[i], 0.8 * half[i]
+        canvas.line((cx, y - reach, cx, y + reach), line, pen)
 
 
 def grapes(canvas: ImageDraw, x: float, y: float, size: float) -> None:

@@ -79,9 +79,7 @@ def wood(height: int, width: int, colour: Colour, seed: int) -> Picture:
     return shade(colour, _grain(height, width, seed), 0.075)
 
 
-def planks(
-    size_px: tuple[int, int], boards: int, cuts: int, colour: Colour, seed: int
-) -> Picture:
+def planks(size_px: tuple[int, int], boards: int, cuts: int, colour: Colour, seed: int) -> Picture:
     """Boards side by side, each of its own tone, with thin dark joints.
 
     Args:
@@ -120,7 +118,8 @@ def plaster(size_px: int, colour: Colour, seed: int) -> Picture:
 
 def soil(size_px: int, seed: int) -> Picture:
     """Dark potting soil in crumbs."""
-    crumbs = noise(size_px, size_px, (5, 5), seed) + 0.6 * noise(size_px, size_px, (14, 14), seed + 1)
+    crumbs = noise(size_px, size_px, (5, 5), seed)
+    crumbs = crumbs + 0.6 * noise(size_px, size_px, (14, 14), seed + 1)
     return shade((62, 44, 32), crumbs, 0.22)
 
 
@@ -143,7 +142,8 @@ def leaf(colour: Colour, vein: Colour, seed: int, size_px: int = 256) -> Picture
     branch = ((u - 0.35 * side) * 9.0) % 1.0
     twig = np.exp(-(((branch - 0.5) / 0.09) ** 2)) * np.clip(1.1 - side, 0.0, 1.0) * 0.45
     weight = np.maximum(rib, twig)[..., None]
-    return np.rint(pixels * (1 - weight) + np.array(vein) * weight).astype(np.uint8)
+    blend = pixels * (1 - weight) + np.array(vein) * weight
+    return np.asarray(np.rint(blend), dtype=np.uint8)
 
 
 def fabric(size_px: int, colour: Colour, seed: int, thread_px: int = 8) -> Picture:
@@ -161,7 +161,8 @@ def carpet(size_px: int, colour: Colour, seed: int) -> Picture:
 
 def terracotta(size_px: int, seed: int) -> Picture:
     """Fired clay with faint turning marks along u."""
-    marks = noise(size_px, size_px, (4, 300), seed) + 0.7 * noise(size_px, size_px, (6, 6), seed + 1)
+    marks = noise(size_px, size_px, (4, 300), seed)
+    marks = marks + 0.7 * noise(size_px, size_px, (6, 6), seed + 1)
     return shade((178, 92, 58), marks, 0.035)
 
 
@@ -179,7 +180,7 @@ def sky(height: int, width: int, seed: int) -> Picture:
     trees = np.clip((v - ridge) * height / 6.0, 0.0, 1.0)[..., None]
     green = shade((134, 148, 112), noise(height, width, (9, 9), seed + 3), 0.05)
     blend = picture * (1 - trees) + green * trees
-    return np.clip(np.rint(blend), 0, 255).astype(np.uint8)
+    return np.asarray(np.clip(np.rint(blend), 0, 255), dtype=np.uint8)
 
 
 def _grain(height: int, width: int, seed: int) -> Field:

@@ -161,8 +161,11 @@ def _costs(bends: Array, target: Array, stepping: int) -> Array:
     clavicle = chest + chest_turn @ _bone("chest", "clavicle_r")
     shoulder = clavicle + (chest_turn @ trunk.clavicle) @ _bone("clavicle_r", "upper_arm_r")
     away = np.linalg.norm(target - shoulder, axis=1)
+    easy = _EASY.copy()
+    # What stands on a table is reached by leaning over it; only low things make the knees bend.
+    easy[Bend.UP] *= 0.2 + 0.9 * float(eased((0.8 - target[2]) / 0.6))
     costs = [
-        bends / _EASY,
+        bends / easy,
         _hinge(away, _ARM_EASY_M, 6.0)[:, None],
         _hinge(away, _ARM_MOST_M, 300.0)[:, None],
         _hinge(-away, -_ARM_LEAST_M, 40.0)[:, None],

@@ -41,16 +41,23 @@ def rug() -> Asset:
     """Woven rug, 2.60 x 1.90 m; it counts as floor."""
     sheet = box(2.60, 1.90, RUG_M).moved(z=RUG_M / 2).projected("z")
     wool = Material("wool", texture=bordered_rug(), rgba=_PLAIN, specular=0.0, shininess=0.0)
-    return furniture("Rug", [sheet.part(wool)], (), looks=Looks("woven rug", ("brown",), "flat"))
+    return furniture(
+        "Rug",
+        (2.60, 1.90, RUG_M),
+        [sheet.part(wool)],
+        (),
+        looks=Looks("woven rug", ("brown",), "flat"),
+    )
 
 
 def floor_lamp() -> Asset:
     """Lamp on a tall stem, 1.62 m high."""
     foot = cylinder(0.150, 0.024, bevel=0.006, segments=36).moved(z=0.012)
     stem = cylinder(0.011, 1.42, segments=14).moved(z=0.73)
-    shade = _drum(0.215, 0.175, 0.30).moved(z=1.47)
+    shade = cylinder(0.215, 0.30, top_radius=0.175, segments=40).moved(z=1.47)
     return furniture(
         "FloorLamp",
+        (0.43, 0.43, 1.62),
         [merge((foot, stem)).part(BLACK_METAL), shade.part(lamp_shade())],
         (
             Collider("cylinder", (0.150, 0.012, 0.0), (0.0, 0.0, 0.012)),
@@ -72,6 +79,7 @@ def pendant_lamp() -> Asset:
     glow = Material("glow", (0.95, 0.78, 0.50, 1.0), specular=0.0, emission=0.8)
     return furniture(
         "PendantLamp",
+        (0.47, 0.47, 1.15),
         [
             merge((outside.moved(z=2.05), cord, rose)).part(BLACK_METAL),
             inside.moved(z=2.05).part(BRASS_METAL),
@@ -79,21 +87,24 @@ def pendant_lamp() -> Asset:
         ],
         (),
         looks=Looks("hanging lamp", ("black",), "lamp"),
+        bottom=2.05,
     )
 
 
 def curtains() -> Asset:
-    """Two ochre curtains on a rod, 2.5 m apart at their outsides; the wall is at +y."""
-    meshes = [_folds(0.52).moved(x=s * 1.02) for s in (-1, 1)]
-    rod = cylinder(0.013, 2.75, segments=14).turned("y", 90).moved(z=2.58)
+    """Two ochre curtains beside a window 2 m wide, 0.70 to 2.62 m high; the wall is at +y."""
+    meshes = [_folds(0.54).moved(x=s * 1.33) for s in (-1, 1)]
+    rod = cylinder(0.013, 3.36, segments=14).turned("y", 90).moved(z=2.60)
     knobs = [cylinder(0.024, 0.05, bevel=0.01).turned("y", 90) for _ in range(2)]
-    ends = [m.moved(x=s * 1.39, z=2.58) for m, s in zip(knobs, (-1, 1), strict=True)]
-    linen = cloth("linen", (168, 132, 84), 61)
+    ends = [m.moved(x=s * 1.70, z=2.60) for m, s in zip(knobs, (-1, 1), strict=True)]
+    linen = cloth("linen", (172, 128, 76), 61)
     return furniture(
         "Curtains",
+        (3.45, 0.060, 1.924),
         [draped(merge(meshes)).part(linen), merge((rod, *ends)).part(BLACK_METAL)],
         (),
         looks=Looks("ochre curtains", ("brown",), "curtain"),
+        bottom=0.70,
     )
 
 
@@ -122,10 +133,12 @@ def floor_vase() -> Asset:
     body = revolve(np.vstack(((0.0, 0.0), outline, inner)), 36)
     clay = Material("clay", texture=_glaze(), rgba=_PLAIN, specular=0.12, shininess=0.2)
     rng = np.random.default_rng(17)
-    stems = merge(_grass(rng) for _ in range(13))
+    half = merge(_grass(rng) for _ in range(6))
+    stems = merge((half, half.turned("z", 180)))
     straw = Material("straw", (0.66, 0.50, 0.28, 1.0), specular=0.0, shininess=0.0)
     return furniture(
         "Vase",
+        (0.44, 0.40, 1.09),
         [body.part(clay), stems.part(straw)],
         (
             Collider("cylinder", (0.138, 0.170, 0.0), (0.0, 0.0, 0.170)),
@@ -148,6 +161,7 @@ def basket() -> Asset:
     uvs = bowl.uvs * (10.0, 5.0)
     return furniture(
         "Basket",
+        (0.43, 0.43, 0.346),
         [
             bowl.textured(uvs).part(wicker),
             draped(merge(rolls)).part(cloth("russet", (136, 84, 60), 71)),
@@ -157,22 +171,14 @@ def basket() -> Asset:
     )
 
 
-def _drum(radius: float, top_radius: float, height: float) -> Mesh:
-    """Open lamp shade about the origin, seen from outside and inside."""
-    half = height / 2
-    outside = np.array(((radius, -half), (top_radius, half)))
-    inside = (outside - (0.004, 0.0))[::-1]
-    return merge((revolve(outside, 40), revolve(inside, 40)))
-
-
 def _folds(width: float) -> Mesh:
-    """One hanging curtain, closed, in soft folds, 0.05 to 2.55 m above the floor."""
+    """One hanging curtain, drawn aside in soft folds, 0.70 to 2.57 m above the floor."""
     x = np.linspace(-width / 2, width / 2, 73)
     rings = []
-    for z, tight in ((0.05, 1.0), (0.9, 0.95), (1.8, 0.92), (2.55, 0.9)):
-        wave = 0.034 * np.sin(x / width * 2 * np.pi * 7 + 0.3 * z) * (1.15 - 0.12 * z)
+    for z, tight in ((0.70, 1.0), (1.2, 0.97), (1.9, 0.94), (2.57, 0.9)):
+        wave = 0.024 * np.sin(x / width * 2 * np.pi * 7 + 0.3 * z) * (1.15 - 0.12 * z)
         front = np.column_stack((x * tight, wave - 0.004))
-        outline = np.concatenate((front, (front + (0.0, 0.008))[::-1]))
+        outline = np.concatenate((front, (front + np.array((0.0, 0.008)))[::-1]))
         rings.append(np.column_stack((outline, np.full(len(outline), z))))
     return loft(rings, crease_deg=75.0)
 
@@ -182,16 +188,16 @@ def _picture(words: str, paint_work: paint.Picture, size: tuple[float, float], z
     width, height = size
     opening = rectangle(width - 0.05, height - 0.05)
     frame = extrude(rectangle(width, height), 0.030, holes=[opening], bevel=0.003)
-    canvas = box(width - 0.048, height - 0.048, 0.012).moved(z=-0.006)
-    upright = (frame.turned("x", 90).moved(y=-0.015, z=z), canvas.turned("x", 90))
+    canvas = box(width - 0.048, 0.012, height - 0.048).projected("-y")
     oil = Material("oil", texture=paint_work, rgba=_PLAIN, specular=0.05, shininess=0.1)
     dark = Material("frame", (0.20, 0.14, 0.10, 1.0), specular=0.2, shininess=0.3)
-    picture = upright[1].moved(y=-0.014, z=z).projected("-y")
     return furniture(
         "Picture",
-        [upright[0].part(dark), picture.part(oil)],
+        (width, 0.030, height),
+        [frame.turned("x", 90).part(dark), canvas.part(oil)],
         (),
         looks=Looks(words, ("brown",), "picture"),
+        bottom=z - height / 2,
     )
 
 
@@ -246,5 +252,3 @@ def _wicker() -> paint.Picture:
     swap = (rows // 16) % 2
     wave = np.sin((columns / 64 + 0.5 * swap) * 2 * np.pi) + 0.6 * np.sin(rows / 16 * np.pi) ** 2
     return paint.shade((150, 110, 66), wave + 0.3 * paint.noise(64, 64, (2, 8), 9), 0.16)
-
-

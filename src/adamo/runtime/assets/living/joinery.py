@@ -7,7 +7,7 @@ so the two cannot disagree.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from adamo.runtime.assets import paint
 from adamo.runtime.assets.asset import Asset, Collider, Looks, Material, Part, Surface
-from adamo.runtime.assets.kit import Mesh, box, loft, merge
+from adamo.runtime.assets.kit import Mesh, box, fit, loft, merge
 
 Triple = tuple[float, float, float]
 
@@ -81,9 +81,8 @@ def box_mapped(
     across = np.array([sum(_ACROSS[k]) - _u_axis(k, grain) for k in range(3)])[side]
     row = np.arange(len(points))
     uvs = np.column_stack((points[row, along] / tile_m[0], points[row, across] / tile_m[1]))
-    return Mesh(
-        points, mesh.normals[vertex], uvs + (shift % 1.0, shift / 2 % 1.0), index.reshape(-1, 3)
-    )
+    uvs += np.array((shift % 1.0, shift / 2 % 1.0))
+    return Mesh(points, mesh.normals[vertex], uvs, index.reshape(-1, 3))
 
 
 def _u_axis(side: int, grain: str) -> int:
@@ -91,7 +90,7 @@ def _u_axis(side: int, grain: str) -> int:
     return wished if wished != side else _ACROSS[side][0]
 
 
-def cushion(size: Triple, plan: float = 7.0, crown: float = 3.2, detail: int = 28) -> Mesh:
+def cushion(size: Triple, plan: float = 7.0, crown: float = 3.2, detail: int = 24) -> Mesh:
     """A stuffed cushion about the origin: a superellipsoid.
 
     Args:
@@ -124,16 +123,28 @@ def upright_box(mesh: Mesh) -> Collider:
 
 def furniture(
     name: str,
+    size: Triple,
     parts: Sequence[Part],
     colliders: tuple[Collider, ...],
     surfaces: tuple[Surface, ...] = (),
     *,
     looks: Looks,
+    bottom: float = 0.0,
 ) -> Asset:
-    """A static piece; its size is what its parts span."""
-    points = np.concatenate([part.vertices for part in parts]).astype(np.float64)
-    size = _triple(np.round(points.max(axis=0) - points.min(axis=0), 6))
-    return Asset(name, size, tuple(parts), colliders, 20.0, looks, surfaces)
+    """A static piece.
+
+    Args:
+        name: Class of the piece.
+        size: What its parts span; they are brought to it exactly, in the last millimetre.
+        parts: What is seen.
+        colliders: What collides.
+        surfaces: What carries.
+        looks: Its appearance.
+        bottom: Height of its lowest point above the floor, for what hangs.
+    """
+    rise = np.array((0.0, 0.0, size[2] / 2 + bottom), dtype=np.float32)
+    placed = (replace(part, vertices=part.vertices + rise) for part in fit(parts, size))
+    return Asset(name, size, tuple(placed), colliders, 20.0, looks, surfaces)
 
 
 def _triple(values: NDArray[np.float64]) -> Triple:

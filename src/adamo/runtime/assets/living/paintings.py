@@ -6,10 +6,11 @@ Earth colours only: nothing here is blue, and nothing is near white.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from adamo.runtime.assets.paint import Field, Picture, noise
 
-_SAND = (196, 168, 122)
+_SAND = (178, 150, 108)
 _OCHRE = (184, 132, 60)
 _RUST = (150, 80, 48)
 _OLIVE = (108, 108, 70)
@@ -90,7 +91,7 @@ def _soft(inside: Field, height: int) -> Field:
     return np.clip(inside * height / 1.5 + 0.5, 0.0, 1.0)
 
 
-def _over(picture: Field, colour: tuple[int, int, int], weight: Field | bool) -> Field:
+def _over(picture: Field, colour: tuple[int, int, int], weight: ArrayLike) -> Field:
     cover = np.asarray(weight, dtype=np.float64)[..., None]
     return np.asarray(picture * (1 - cover) + np.array(colour) * cover)
 

@@ -17,21 +17,21 @@ from adamo.runtime.assets.living.joinery import (
 
 _WIDTH, _DEPTH = 2.65, 0.92
 _ARM = 0.17
+_ARM_X = (_WIDTH - _ARM) / 2 - 0.010
+"""Middle of an arm; the base stands out a little."""
 _SEATS = 3
 _SEAT_TOP = 0.440
 
 
 def sofa() -> Asset:
     """Sage green sofa for three, 2.65 x 0.92 m; one sits facing -y."""
-    inner = _WIDTH - 2 * _ARM
+    inner = 2 * _ARM_X - _ARM
     wide = inner / _SEATS
     places = [(k - (_SEATS - 1) / 2) * wide for k in range(_SEATS)]
-    frame = rounded_box(_WIDTH - 0.02, _DEPTH - 0.06, 0.17, 0.025).moved(z=0.205)
-    spine = rounded_box(_WIDTH - 0.06, 0.15, 0.58, 0.05).moved(0.0, _DEPTH / 2 - 0.075, 0.41)
+    frame = rounded_box(_WIDTH, _DEPTH - 0.06, 0.17, 0.025, 2).moved(z=0.205)
+    spine = rounded_box(_WIDTH - 0.06, 0.15, 0.58, 0.05, 2).moved(0.0, _DEPTH / 2 - 0.075, 0.41)
     arms = [
-        rounded_box(_ARM, _DEPTH - 0.03, 0.48, 0.055, 4).moved(
-            s * (_WIDTH - _ARM) / 2, -0.015, 0.36
-        )
+        rounded_box(_ARM, _DEPTH - 0.03, 0.48, 0.055, 4).moved(s * _ARM_X, -0.015, 0.36)
         for s in (-1, 1)
     ]
     seats = [
@@ -60,6 +60,7 @@ def sofa() -> Asset:
     )
     return furniture(
         "Sofa",
+        (2.65, 0.92, 0.823),
         [
             cover.part(cloth("sage", (126, 128, 100), 41)),
             legs.part(walnut()),
@@ -82,15 +83,14 @@ def _throw_pillow(x: float, yaw_deg: float) -> Mesh:
 def _blanket() -> Mesh:
     """A woven blanket that hangs over the left arm."""
     half, top = _ARM / 2 + 0.006, 0.607
-    middle = -(_WIDTH - _ARM) / 2
-    line = np.array(((half, 0.47), (half, top), (-half + 0.003, top), (-half + 0.003, 0.24)))
+    line = np.array(((half, 0.47), (half, top), (-half + 0.003, top), (-half + 0.003, 0.30)))
     line = fillet(line, [0.0, 0.05, 0.05, 0.0], 5)
     inward = np.column_stack((np.gradient(line[:, 1]), -np.gradient(line[:, 0])))
     inward /= np.linalg.norm(inward, axis=1, keepdims=True)
     outline = np.concatenate((line, (line + 0.007 * inward)[::-1]))
     rings = []
-    for y in np.linspace(-0.28, 0.10, 9):
+    for y in np.linspace(-0.28, 0.10, 5):
         wave = 0.004 * np.sin(y * 40)
         ring = np.column_stack((outline[:, 0], np.full(len(outline), y), outline[:, 1] + wave))
-        rings.append(ring + (middle, 0.0, 0.0))
+        rings.append(ring + np.array((-_ARM_X, 0.0, 0.0)))
     return loft(rings[::-1])

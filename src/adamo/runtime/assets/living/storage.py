@@ -40,10 +40,11 @@ def tall_shelf() -> Asset:
         Board((0.572, 0.018, 0.872), (s * 0.2895, -deep / 2 + 0.019, 0.511), "z", collides=False)
         for s in (-1, 1)
     ]
-    handles = merge(_bar(s * 0.045, -deep / 2 + 0.004, 0.70) for s in (-1, 1))
+    handles = merge(_bar(s * 0.045, -deep / 2 + 0.006, 0.70) for s in (-1, 1))
     books = _shelf_books()
     return furniture(
         "TallShelf",
+        (1.20, 0.40, 2.008),
         [
             timber((*side, lower, middle, lid, *doors), oak()),
             timber((back, case, plinth), walnut()),
@@ -96,6 +97,7 @@ def sideboard() -> Asset:
     )
     return furniture(
         "Sideboard",
+        (1.90, 0.50, 0.652),
         [
             timber((top, case, *legs), walnut()),
             timber((*doors, *drawers), oak()),

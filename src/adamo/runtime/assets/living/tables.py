@@ -23,9 +23,7 @@ from adamo.runtime.assets.living.joinery import (
 )
 
 
-def _legs(
-    span: tuple[float, float], thick: float, height: float, foot: float = 0.0
-) -> list[Board]:
+def _legs(span: tuple[float, float], thick: float, height: float, foot: float = 0.0) -> list[Board]:
     """Four square legs whose outer faces span a rectangle."""
     x, y = span[0] / 2 - thick / 2, span[1] / 2 - thick / 2
     middle = foot + height / 2
@@ -50,6 +48,7 @@ def dining_table() -> Asset:
     legs = _legs((0.95, 1.56), 0.072, 0.746)
     return furniture(
         "DiningTable",
+        (1.05, 1.66, 0.78),
         [timber((*top, *apron, *legs), oak())],
         solids((slab, *apron, *legs)),
         (Surface("", (0.0, 0.0, 0.78), (0.525, 0.83)),),
@@ -69,6 +68,7 @@ def coffee_table() -> Asset:
     stack = book_stack(((0.26, 0.19, 0.030), (0.23, 0.17, 0.024)), (-0.30, 0.02, 0.150), seed=3)
     return furniture(
         "CoffeeTable",
+        (1.30, 0.65, 0.46),
         [timber((top, lower, *rails), walnut()), timber(legs, oak()), bound([stack])],
         (*solids((top, lower, *legs, *rails)), *stack.colliders),
         (
@@ -90,6 +90,7 @@ def side_table() -> Asset:
     frame = merge(board.mesh() for board in (*legs, *braces)).part(BLACK_METAL)
     return furniture(
         "SideTable",
+        (0.42, 0.42, 0.52),
         [timber([top], oak()), frame],
         solids((top, *legs, *braces)),
         (Surface("", (0.0, 0.0, 0.52), (0.21, 0.21)),),
@@ -106,12 +107,13 @@ def console() -> Asset:
     ]
     legs = _legs((1.02, 0.30), 0.034, 0.640)
     shelf = Board((0.97, 0.25, 0.018), (0.0, 0.0, 0.190))
-    knobs = merge(_knob(s * 0.252, -0.164, 0.690) for s in (-1, 1))
+    knobs = merge(_knob(s * 0.252, -0.160, 0.690) for s in (-1, 1))
     foot = cylinder(0.070, 0.016, bevel=0.004, segments=28).moved(0.40, 0.03, 0.788)
     stem = cylinder(0.009, 0.190, segments=12).moved(0.40, 0.03, 0.890)
     shade = cylinder(0.115, 0.170, top_radius=0.085, segments=32).moved(0.40, 0.03, 1.055)
     return furniture(
         "Console",
+        (1.10, 0.34, 1.14),
         [
             timber((top, case, shelf, *legs), walnut()),
             timber(fronts, oak()),
@@ -142,12 +144,11 @@ def chair() -> Asset:
     pad = draped(cushion((0.43, 0.40, 0.030), 9.0, 3.0).moved(0.0, -0.030, 0.455))
     pad_cloth = cloth("charcoal", (74, 68, 62), 5)
     back = Collider("box", (0.225, 0.020, 0.150), (0.0, 0.222, 0.730))
-    rear = tuple(
-        Collider("box", (0.017, 0.022, 0.440), (s * 0.208, 0.208, 0.440)) for s in (-1, 1)
-    )
+    rear = tuple(Collider("box", (0.017, 0.022, 0.440), (s * 0.208, 0.208, 0.440)) for s in (-1, 1))
     wood = merge([*(b.mesh() for b in (*front, seat, *rails)), posts, slats])
     return furniture(
         "Chair",
+        (0.46, 0.50, 0.88),
         [wood.part(oak()), pad.part(pad_cloth)],
         (
             *solids((*front, seat, *rails)),
@@ -162,7 +163,7 @@ def chair() -> Asset:
 
 def lamp_shade() -> Material:
     """Lit cloth of a lamp."""
-    return Material("shade", (0.88, 0.66, 0.36, 1.0), specular=0.0, emission=0.45)
+    return Material("shade", (0.84, 0.62, 0.34, 1.0), specular=0.0, emission=0.25)
 
 
 def _knob(x: float, y: float, z: float) -> Mesh:
@@ -183,5 +184,3 @@ def _slat(z: float) -> Mesh:
     path = np.column_stack((x, lean - 0.012 + 0.016 * np.cos(x / 0.205 * np.pi / 2), x * 0 + z))
     slat = sweep(rectangle(0.014, 0.062, 0.005, 2), path)
     return box_mapped(slat, (0.9, 0.45), "x", z)
-
-

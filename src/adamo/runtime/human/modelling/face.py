@@ -70,14 +70,14 @@ def head(v: Variant) -> Shape:
     whole = union(0.004, whole, mouth(v))
     whole = union(0.004, whole, mirrored(_ear()))
     whole = _with_eyes(v, whole)
-    nape = round_cone((-0.032, 0.0, 1.40), (-0.030, 0.0, 1.53), 0.040, 0.036)
+    nape = round_cone((-0.026, 0.0, 1.40), (-0.030, 0.0, 1.53), 0.032, 0.036)
     throat = round_cone((-0.010, 0.0, 1.36), (0.000, 0.0, 1.53), mix(v, 0.054, 0.045), mix(v, 0.050, 0.042))
     apple = ellipsoid((0.040, 0.0, 1.462), (0.012, 0.010, 0.014))
     neck = union(0.03, throat, nape)
     if f < 0.5:
         neck = union(0.02, neck, apple)
-    shoulders = ellipsoid((-0.016, 0.0, 1.372), (0.075, 0.12, 0.042))
-    return union(0.022, whole, union(0.05, neck, shoulders))
+    shoulders = ellipsoid((-0.014, 0.0, 1.372), (0.056, 0.095, 0.036))
+    return union(0.022, whole, union(0.035, neck, shoulders))
 
 
 def nose(v: Variant) -> Shape:

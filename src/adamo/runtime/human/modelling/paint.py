@@ -79,8 +79,8 @@ def lips_mask(v: Variant, p: Array) -> Array:
     full = mix(v, 0.85, 1.08)
     t = np.clip(y / 0.0258, 0.0, 1.0)
     bow = 0.0016 * np.exp(-((y / 0.0035) ** 2))
-    top = (0.0088 * full) * (1 - t**2.0) + 0.0055 * t**1.5 - bow
-    bottom = -(0.0108 * full) * (1 - t**2.2) + 0.0046 * t**1.5
+    top = (0.0080 * full) * (1 - t**2.0) + 0.0055 * t**1.5 - bow
+    bottom = -(0.0100 * full) * (1 - t**2.2) + 0.0046 * t**1.5
     inside = np.maximum(np.maximum(z - top, bottom - z), y - 0.0258)
     return _soft(inside, 0.0016) * (p[..., 0] > 0.05)
 
@@ -105,7 +105,7 @@ def head_picture(v: Variant, surface: Shape, around: Shape) -> Picture:
         tint(skin * 0.45 + hair * 0.55, v.stubble * _beard(p))
     scalp = _soft(hairline(v)(p.reshape(-1, 3)).reshape(light.shape) - 0.001, 0.010)
     tint(hair, scalp)
-    tint(lips, 0.9 * lips_mask(v, p))
+    tint(lips, 0.8 * lips_mask(v, p))
     y, z = np.abs(p[..., 1]), p[..., 2] - MOUTH_Z
     line = np.abs(z - 0.0052 * np.clip(y / 0.0262, 0, 1) ** 2) - 0.0004
     tint(lips * 0.42, 0.85 * _soft(np.maximum(line, y - 0.0258), 0.0012) * (p[..., 0] > 0.05))
