@@ -76,7 +76,8 @@ SHOTS: dict[str, tuple[str, float, float, float, float]] = {
     "reach": ("reach", 130, -8, 0.87, 1.9),
     "crouch": ("crouch", 125, -12, 0.6, 1.6),
     "bent_elbow": ("bent_elbow", 160, -4, 1.25, 1.0),
-    "hand": ("stand", 100, -5, 0.84, 0.36),
+    "hand": ("rest", 215, -5, 0.90, 0.36),
+    "eyes_closed": ("bent_elbow", 150, -2, 1.585, 0.36),
     "feet": ("stand", 130, -25, 0.1, 0.6),
 }
 
@@ -152,7 +153,7 @@ def render(name: str, shots: Sequence[str]) -> dict[str, NDArray[np.uint8]]:
             bend, azimuth, elevation, height_m, extent_m = SHOTS[shot]
             pose_human(model, data, *pose(*POSES[bend]))
             mujoco.mj_forward(model, data)
-            side_m = 0.25 if shot == "hand" else 0.0
+            side_m = 0.57 if shot == "hand" else 0.0
             camera.lookat[:] = (0.0, side_m, height_m)
             camera.azimuth, camera.elevation = (
                 azimuth + 180 if shot == "side" else azimuth,

@@ -17,7 +17,15 @@ def test_semantic_tags(engine, task):
     assert result.missing_notes == 0
 
 
-@pytest.mark.parametrize("task", ["T1", "T3", "T5", "T6", "T9"])
+@pytest.mark.parametrize("labeling", ["sem", "opaq"])
+@pytest.mark.parametrize("task", ["T14", "T15"])
+def test_groups_told_by_their_looks(engine, task, labeling):
+    result = run_episode(task=task, model="baseline", labeling=labeling, engine=engine)
+    assert result.completion is not None
+    assert result.completion >= 0.8, result.answer
+
+
+@pytest.mark.parametrize("task", ["T1", "T2", "T3", "T5", "T6", "T7", "T9"])
 def test_opaque_tags(engine, task):
     result = run_episode(task=task, model="baseline", labeling="opaq", engine=engine)
     assert result.completion == 1.0, result.answer

@@ -31,8 +31,8 @@ PALETTE: tuple[Colour, ...] = (
     (140, 245, 225),
     (255, 205, 120),
 )
-"""Bright enough to stand out on wood, and far from its brown. None is blue or white: instructions ask
-for blue things and white parts, and a drawn line must not pass for either."""
+"""Bright enough to stand out on wood, and far from its brown. None is blue or white: instructions
+ask for blue things and white parts, and a drawn line must not pass for either."""
 
 INK: Colour = (16, 18, 22)
 """Of plates and of the casing of lines."""

@@ -1,8 +1,8 @@
 """Headless drawing: the colour picture and, for each pixel, which interactable object it shows.
 
 The scene is drawn twice with `mjr_render`: in colour with a shadow and anti-aliasing, then as flat
-ids with neither, which costs a sixth of the first and keeps ids from blending at edges. The Python `Renderer`
-of MuJoCo builds the same picture but decodes ids geom by geom; this one reads one byte a pixel.
+ids with neither, which costs a sixth of the first and keeps ids from blending at edges. MuJoCo's
+own Python `Renderer` decodes ids geom by geom; this one looks one byte a pixel up.
 """
 
 from __future__ import annotations
@@ -110,7 +110,8 @@ class SceneRenderer:
         material = model.geom_matid
         alpha = np.where(material >= 0, model.mat_rgba[material, 3], model.geom_rgba[:, 3])
         drawn = model.geom_group < 3
-        self._glass = np.unique(object_of_geom[(alpha < 1) & drawn])
+        see_through = np.unique(object_of_geom[(alpha < 1) & drawn])
+        self._glass = frozenset(int(i) for i in see_through) - {NOTHING}
 
     def _aim(self, data: mujoco.MjData, camera: Camera) -> mujoco.MjrRect:
         """Point the MuJoCo camera, update the scene, and fit the buffers."""
@@ -157,10 +158,10 @@ class SceneRenderer:
         """Which object each pixel shows: in front and, if glass is in view, without the glass."""
         rect = self._aim(data, camera)
         front = self._ids(rect)
-        glass = [i for i in self._glass if i in front.present]
+        glass = self._glass & front.present
         if not glass:
             return (front,)
-        rows, columns = _bounds(np.isin(front.ids, glass))
+        rows, columns = _bounds(np.isin(front.ids, list(glass)))
         self._hide_glass()
         self._crop(camera, rows, columns)
         height, width = rows.stop - rows.start, columns.stop - columns.start
@@ -181,9 +182,11 @@ class SceneRenderer:
             flags[:] = kept
 
     def _hide_glass(self) -> None:
-        """Take transparent geoms out of the scene; the next aim brings them back."""
+        """Take see-through objects out of the scene; the next aim brings them back."""
+        is_geom = self._mujoco.mjtObj.mjOBJ_GEOM.value
         for geom in self._scene.geoms[: self._scene.ngeom]:
-            if geom.rgba[3] < 1.0:
+            thing = self._object_of_geom[geom.objid] if geom.objtype == is_geom else NOTHING
+            if geom.rgba[3] < 1.0 or thing in self._glass:
                 geom.size[:] = 0.0
                 geom.rgba[3] = 0.0
                 geom.segid = -1

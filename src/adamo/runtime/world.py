@@ -165,8 +165,8 @@ def _empty_spec() -> mujoco.MjSpec:
     spec.visual.global_.fovy = math.degrees(FOV_Y_RAD)
     spec.visual.global_.offwidth = 1920
     spec.visual.global_.offheight = 1080
-    spec.visual.headlight.ambient = [0.46, 0.455, 0.45]
-    spec.visual.headlight.diffuse = [0.14, 0.14, 0.14]
+    spec.visual.headlight.ambient = [0.54, 0.535, 0.53]
+    spec.visual.headlight.diffuse = [0.16, 0.16, 0.16]
     spec.visual.headlight.specular = [0.0, 0.0, 0.0]
     return spec
 
@@ -179,7 +179,7 @@ def _add_light(spec: mujoco.MjSpec, light: Light) -> None:
         pos=light.position,
         dir=direction / np.linalg.norm(direction),
         type=mujoco.mjtLightType.mjLIGHT_SPOT,
-        cutoff=85.0,
+        cutoff=80.0,
         exponent=0.6,
         diffuse=[light.diffuse, light.diffuse * 0.98, light.diffuse * 0.94],
         specular=[0.15, 0.15, 0.15],

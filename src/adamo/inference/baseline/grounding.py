@@ -153,7 +153,10 @@ def _white(beliefs: Beliefs, sight: Sight | None) -> float:
     usual = _expect(beliefs, lambda p: p.white)
     if sight is None or sight.pixels < 30:
         return usual
-    return _updated(usual, _ratio(sight.share("white"), 0.05))
+    share = sight.share("white")
+    if sight.clear > 0.75:  # what shines through glass is not its own
+        share *= 1 - sight.clear
+    return _updated(usual, _ratio(share, 0.05))
 
 
 def _label(beliefs: Beliefs, sight: Sight | None) -> float:

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from PIL.Image import Image
     from PIL.ImageDraw import ImageDraw
 
-WORDS_ARC_DEG = 77.0
+WORDS_ARC_DEG = 74.0
 """Widest arc that words may cover: what a person in front can read without turning the thing.
 
-Below a quarter turn, so that four prints fit around with a gap between them: then one of them
+Well below a quarter turn, so that four prints fit around with a gap between them: then one of them
 faces a person in front, behind or at either side.
 """
 
@@ -121,7 +121,7 @@ def _print(panel: Image, line: Line, width: int, rows: tuple[int, int]) -> None:
     from PIL import Image, ImageDraw, ImageFont
 
     font = ImageFont.load_default(size=160)
-    bold, space = 7, 22
+    bold, space = 7, 15
     canvas = Image.new("L", (200 * len(line.text), 320), 0)
     pen = ImageDraw.Draw(canvas)
     x = 20.0

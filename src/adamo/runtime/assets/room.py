@@ -162,7 +162,7 @@ def _outside(x_max: float, window_y: float) -> Part:
     normals = np.tile([-1.0, 0.0, 0.0], (4, 1))
     mesh = Mesh(vertices, normals, uvs, np.array([(0, 1, 2), (0, 2, 3)]))
     view = paint.sky(360, 512, 3)
-    return mesh.part(Material("outside", texture=view, emission=0.75, specular=0.0))
+    return mesh.part(Material("outside", texture=view, emission=0.5, specular=0.0))
 
 
 def _colliders(size: Triple, middle: Pair) -> tuple[Collider, ...]:

@@ -68,7 +68,7 @@ _CONE_DEG = {
     "eyelids": 60.0,
     "clavicle": 45.0,
     "upper_arm": 170.0,
-    "hand": 60.0,
+    "hand": 85.0,  # with the turn of the forearm, which has no joint of its own
     "fingers": 100.0,
     "thigh": 130.0,
     "foot": 60.0,

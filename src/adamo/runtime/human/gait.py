@@ -25,6 +25,8 @@ _RAMP = 1.3
 """Steps in which the body gathers speed, and loses it again."""
 _LIFT, _LAND = 0.1, 0.9
 """The part of a step in which its foot is in the air."""
+_PRELUDE = 0.35
+"""Steps before the first one, in which its heel comes up."""
 _STANCE = 2.0 - (_LAND - _LIFT)
 _SLIDE_M = 0.045
 """A route this short (a turn of 4 degrees) is done without lifting a foot."""
@@ -66,19 +68,19 @@ class Gait:
         """Time from standing to standing."""
         if self.steps == 0:
             return 0.25 if self.route.length_m > 0 else 0.0
-        return self.steps * STEP_S
+        return (self.steps + _PRELUDE) * STEP_S
 
     def stand(self, time_s: float) -> Stand:
         """Where the axis is."""
         if self.steps == 0:
             part = float(eased(time_s / 0.25))
             return self.route.at(part * self.route.length_m)
-        return self.route.at(_travelled(time_s / STEP_S, self.steps, self.route.length_m))
+        return self.route.at(_travelled(self._phase(time_s), self.steps, self.route.length_m))
 
     def pose(self, time_s: float) -> Pose:
         """The posture, in the frame of `stand`; head straight, arms swinging."""
-        phase = time_s / STEP_S
-        if self.steps == 0 or not 0.0 < phase < self.steps:
+        phase = self._phase(time_s)
+        if self.steps == 0 or not -_PRELUDE < phase < self.steps:
             pose = Pose(pelvis_shift=np.array([-0.008, 0.0, -SLACK_M]))
             return plant_feet(turned(pose, arms_at_ease()), STANDING_FEET)[0]
         here = self.stand(time_s)
@@ -86,8 +88,12 @@ class Gait:
         stride = self._stride(phase)
         return _posture(feet, phase, stride, self._favours_left(), self._presence(phase))
 
+    def _phase(self, time_s: float) -> float:
+        """Time in steps; the first one begins at 0."""
+        return time_s / STEP_S - _PRELUDE
+
     def _presence(self, phase: float) -> float:
-        """0 at both ends, 1 from half a step after the start to half a step before the end."""
+        """0 at both ends, 1 from a step after the start to half a step before the end."""
         return float(eased(phase / 0.6) * eased((self.steps - phase) / 0.6))
 
     def _favours_left(self) -> bool:
@@ -103,7 +109,7 @@ class Gait:
 
     def feet(self, time_s: float) -> list[Foot]:
         """Left and right foot in the world."""
-        return [_foot(track, time_s / STEP_S) for track in self.landings]
+        return [_foot(track, self._phase(time_s)) for track in self.landings]
 
 
 def gait(way: Route) -> Gait:
@@ -163,7 +169,8 @@ def _foot(track: tuple[Landing, ...], phase: float) -> Foot:
         pitch -= _strike(here) * (1.0 - float(eased((phase - here.lands) / 0.22)))
     if now + 1 < len(track):
         left = track[now + 1].lifts - phase
-        pitch += _push(track[now + 1]) * float(eased(1.0 - left / 0.62))
+        rise = 0.62 if now > 0 or track[1].lifts > 1.0 else _PRELUDE + _LIFT
+        pitch += _push(track[now + 1]) * float(eased(1.0 - left / rise))
     return Foot(here.x, here.y, here.yaw_rad, pitch)
 
 

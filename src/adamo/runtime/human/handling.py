@@ -10,16 +10,18 @@ import numpy as np
 from adamo.geometry import Array, Vec3
 from adamo.runtime.human.anatomy import eyes, grip, turned
 from adamo.runtime.human.ik import arm_to
-from adamo.runtime.human.postures import CARRY, gazing, holding, standing
+from adamo.runtime.human.postures import CARRY, carrying, gazing, holding, standing
 from adamo.runtime.human.reach import open_hand, stretched
 from adamo.runtime.human.rotations import blended, eased
-from adamo.runtime.human.skeleton import INDEX, Pose
+from adamo.runtime.human.skeleton import INDEX, Pose, joint_frames
 from adamo.runtime.human.stretch import Bend, Stretch, stretch_to
 
 _GRASP_S = 0.36
 """How long the hand stays at the target to close or open."""
-_ARM = [INDEX[n] for n in ("upper_arm_r", "forearm_r")]
-_HAND = [INDEX[n] for n in ("hand_r", "fingers_r")]
+_ON_THE_WAY_M = (0.88, 1.02, 1.14, 1.32)
+"""Height of the hand in front of the body, on its way to 0.7, 1.0, 1.3 and 2.0 m."""
+_ARM = [INDEX[n] for n in ("upper_arm_r", "forearm_r", "hand_r")]
+_FINGERS = INDEX["fingers_r"]
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,8 @@ class Handling:
         bends = self.stretch.bends
         steps = float(np.count_nonzero(bends[[Bend.STEP, Bend.FOLLOW]] > 0.01))
         far = float(np.linalg.norm(self.target - CARRY))
-        return 0.7 + 0.35 * far + 0.8 * abs(float(bends[Bend.UP])) + 0.3 * steps
+        high = max(0.0, float(self.target[2]) - 1.2)
+        return 0.7 + 0.35 * far + 0.8 * abs(float(bends[Bend.UP])) + 0.3 * steps + 0.4 * high
 
     @property
     def event_s(self) -> float:
@@ -63,15 +66,20 @@ class Handling:
         back = time_s > self.event_s
         # Linear progress of the way: 0 at home, 1 at the target.
         part = min(1.0, (self.duration_s - time_s if back else time_s) / self.way_s)
-        bend = float(eased(part / 0.92))
-        body = stretched(standing(), self.stretch, bend, part)
+        bend = self._bend(part)
+        body = stretched(self._standing, self.stretch, bend, part)
         body = self._watching(body, bend)
         full = back == self.takes
         arm = self._arm(body, part, full)
         rotations = body.rotations.copy()
         rotations[_ARM] = arm.rotations[_ARM]
-        rotations[_HAND] = self._hand(time_s, part, full)
+        rotations[_FINGERS] = self._fingers(time_s, part, full)
         return Pose(rotations, body.pelvis_shift)
+
+    @staticmethod
+    def _bend(part: float) -> float:
+        """How far the body is bent; the hand leaves first, so that it clears the table's edge."""
+        return float(eased((part - 0.07) / 0.88))
 
     def _watching(self, body: Pose, bend: float) -> Pose:
         """Eyes on the target, from wherever the head has come to."""
@@ -81,10 +89,17 @@ class Handling:
 
     def _arm(self, body: Pose, part: float, full: bool) -> Pose:
         """The right arm: it leaves home, and meets the target at the end of the way."""
-        along = float(eased((part - 0.08) / 0.92))
-        start = CARRY if full else self._relaxed_grip
-        way = _arc(start, self.target, along)
-        solved, _ = arm_to(turned(body, open_hand()), way)
+        along = float(eased(part))
+        base = self._home(full)
+        # The arc is drawn for a body that stands, and goes along with the shoulder as it bends;
+        # so the hand never comes too close to the shoulder.
+        goal = self.target - (_shoulder(self._bent) - _shoulder(base))
+        way = _arc(grip(base), goal, float(self.target[2]), along)
+        way += _shoulder(body) - _shoulder(base)
+        home = holding(self.size) if full else open_hand()  # both with a straight wrist
+        there = open_hand(float(self.target[2]))
+        wrist = blended(home["hand_r"], there["hand_r"], along)
+        solved, _ = arm_to(turned(body, {"hand_r": wrist}), way)
         if full:
             return solved
         weight = float(eased(part / 0.6))
@@ -92,31 +107,54 @@ class Handling:
         return Pose(rotations, body.pelvis_shift)
 
     @cached_property
-    def _relaxed_grip(self) -> Array:
-        return grip(standing())
+    def _standing(self) -> Pose:
+        return standing()
 
-    def _hand(self, time_s: float, part: float, full: bool) -> Array:
-        """Local rotations of hand and fingers: open before the grasp, closed around the thing."""
-        relaxed, closed = standing(), turned(standing(), holding(self.size))
-        opened = turned(standing(), open_hand())
+    @cached_property
+    def _bent(self) -> Pose:
+        return stretched(self._standing, self.stretch)
+
+    @cached_property
+    def _homes(self) -> tuple[Pose, Pose]:
+        empty = gazing(self._standing, self.gaze)
+        return empty, carrying(empty, self.size)
+
+    def _home(self, full: bool) -> Pose:
+        """The posture before or after, with an empty or a full hand."""
+        return self._homes[1 if full else 0]
+
+    def _fingers(self, time_s: float, part: float, full: bool) -> Array:
+        """Local rotation of the fingers: open before the grasp, closed around the thing."""
+        relaxed = self._standing.rotations[_FINGERS]
+        closed, opened = holding(self.size)["fingers_r"], open_hand()["fingers_r"]
         if part < 1.0 and full:
-            return closed.rotations[_HAND]
+            return closed
         if part < 1.0:
-            weight = float(eased(part / 0.7))
-            return blended(relaxed.rotations[_HAND], opened.rotations[_HAND], weight)
+            return blended(relaxed, opened, float(eased(part / 0.7)))
         done = float(eased((time_s - self.way_s) / _GRASP_S))
-        closing = done if self.takes else 1.0 - done
-        return blended(opened.rotations[_HAND], closed.rotations[_HAND], closing)
+        return blended(opened, closed, done if self.takes else 1.0 - done)
 
 
-def _arc(start: Array, target: Array, along: float) -> Array:
+def _shoulder(pose: Pose) -> Array:
+    return np.asarray(joint_frames(pose)[0][INDEX["upper_arm_r"]])
+
+
+def _arc(start: Array, goal: Array, height_m: float, along: float) -> Array:
     """A point on the way of the hand, which meets the target from the side that is free.
 
-    Things on the floor and on tables are met from above, those in shelves from the front.
+    Args:
+        start: (3,) where the hand is at home.
+        goal: (3,) where it goes, relative to a body that stands.
+        height_m: Height of the target above the floor: things on the floor and on tables are met
+            from above, those in shelves from the front.
+        along: 0 at the start, 1 at the goal.
     """
-    height = float(target[2])
-    forward = float(np.interp(height, [0.3, 0.8, 1.2], [0.8, 0.6, 0.5]))
-    above = float(np.interp(height, [0.1, 0.7, 1.0, 1.2], [0.30, 0.16, 0.14, -0.03]))
-    middle = np.array([forward * target[0], 0.4 * start[1] + 0.6 * target[1], height + above])
+    aside = 0.5 * (start[1] + goal[1])
+    front = max(0.42, 0.45 * float(goal[0]))
+    first = np.array([front, aside, np.interp(goal[2], [0.7, 1.0, 1.3, 2.0], _ON_THE_WAY_M)])
+    forward = float(np.interp(height_m, [0.3, 0.8, 1.2], [0.9, 0.75, 0.55]))
+    above = float(np.interp(height_m, [0.1, 0.7, 1.0, 1.2], [0.22, 0.14, 0.12, -0.02]))
+    last = np.array([forward * goal[0], 0.2 * aside + 0.8 * goal[1], goal[2] + above])
     rest = 1.0 - along
-    return np.asarray(rest * rest * start + 2 * rest * along * middle + along * along * target)
+    ends = rest**3 * start + along**3 * goal
+    return np.asarray(ends + 3 * rest * along * (rest * first + along * last))

@@ -17,7 +17,7 @@ from adamo.runtime.human.anatomy import (
     rest,
     turned,
 )
-from adamo.runtime.human.rotations import about, about_y, about_z, basis
+from adamo.runtime.human.rotations import about, about_y, about_z, basis, cross
 from adamo.runtime.human.skeleton import INDEX, Pose, joint_frames
 
 ANKLE_M = float(rest("foot_l")[2])
@@ -57,14 +57,14 @@ def two_bone(limb: Limb, root: Array, target: Array, hint: Array) -> tuple[Array
     along = float(a @ axis) * float(b @ axis)
     flat_a, flat_b = a - axis * float(a @ axis), b - axis * float(b @ axis)
     product = float(np.linalg.norm(flat_a) * np.linalg.norm(flat_b))
-    at_rest = float(np.arctan2(axis @ np.cross(flat_a, flat_b), flat_a @ flat_b))
+    at_rest = float(np.arctan2(axis @ cross(flat_a, flat_b), flat_a @ flat_b))
     line = target - root
     length = float(np.linalg.norm(line))
     cosine = (length**2 - float(a @ a) - float(b @ b) - 2 * along) / (2 * product)
     bend = float(np.clip(np.arccos(np.clip(cosine, -1.0, 1.0)) - at_rest, *limb.range_rad))
     lower = about(tuple(axis), bend)
     end = a + lower @ b
-    upper = basis(line, hint) @ basis(end, np.cross(end, axis)).T
+    upper = basis(line, hint) @ basis(end, cross(end, axis)).T
     return upper, lower, abs(length - float(np.linalg.norm(end)))
 
 

@@ -102,9 +102,12 @@ def gazing(pose: Pose, direction: Array, blinking: float = 0.0, torso: float = 1
         blinking: 0 to 1, how far the eyes are shut.
         torso: 0 to 1, how much of its share the torso takes; it may have other things to do.
     """
+    flat = float(np.hypot(direction[0], direction[1]))
     yaw = float(np.arctan2(direction[1], direction[0]))
-    pitch = -float(np.arctan2(direction[2], np.hypot(direction[0], direction[1])))
-    yaw = float(np.clip(yaw, -_GAZE_YAW_RAD, _GAZE_YAW_RAD))
+    pitch = -float(np.arctan2(direction[2], flat))
+    # Straight up or down, a yaw means nothing, and the neck must not spin after it.
+    steep = float(eased(2.0 * flat / float(np.linalg.norm(direction))))
+    yaw = steep * float(np.clip(yaw, -_GAZE_YAW_RAD, _GAZE_YAW_RAD))
     shares = np.clip(0.25 * np.array([yaw, pitch]), -_EYES_SHARE_RAD, _EYES_SHARE_RAD)
     yaw, pitch = yaw - float(shares[0]), pitch - float(shares[1])
     twist = 0.5 * torso * _softly_beyond(yaw, _LEAST_TORSO_RAD)

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from adamo.geometry import Array
-from adamo.runtime.human.anatomy import eyes, fingers, mirrored, turned
+from adamo.runtime.human.anatomy import FINGER_AXIS, eyes, fingers, mirrored, rest, turned
 from adamo.runtime.human.ik import arm_to, plant_feet
 from adamo.runtime.human.postures import gazing
-from adamo.runtime.human.rotations import blended
+from adamo.runtime.human.rotations import about, blended, eased
 from adamo.runtime.human.skeleton import INDEX, Pose, joint_frames
 from adamo.runtime.human.stretch import Stretch, stretch_to
 
+_HAND_AXIS = rest("fingers_r") - rest("hand_r")
+_HAND_AXIS = _HAND_AXIS / np.linalg.norm(_HAND_AXIS)
 _MIRROR = np.array([1.0, -1.0, 1.0])
 
 
@@ -28,12 +30,19 @@ def reaching(pose: Pose, target: Array, hand: str = "r") -> Pose:
         return mirrored(reaching(mirrored(pose), target * _MIRROR))
     stretch = stretch_to(*(float(v) for v in target))
     bent = looking_at(stretched(pose, stretch), target)
-    return arm_to(turned(bent, open_hand()), target)[0]
+    return arm_to(turned(bent, open_hand(float(target[2]))), target)[0]
 
 
-def open_hand(hand: str = "r") -> dict[str, Array]:
-    """Local rotations of a hand that is about to grasp."""
-    return {f"hand_{hand}": np.eye(3)} | fingers(hand, np.radians(8.0))
+def open_hand(height_m: float = 1.0) -> dict[str, Array]:
+    """Local rotations of a right hand that is about to grasp something at a height.
+
+    Near the floor the forearm turns and the wrist bends back, so that the fingers point ahead
+    instead of into the floor.
+    """
+    low = float(eased((0.55 - height_m) / 0.4))
+    wrist = about(tuple(_HAND_AXIS), -np.radians(60.0) * low)
+    wrist = wrist @ about(tuple(FINGER_AXIS["r"]), -np.radians(50.0) * low)
+    return {"hand_r": wrist} | fingers("r", np.radians(8.0))
 
 
 def stretched(

@@ -23,9 +23,16 @@ def about(axis: Array | tuple[float, float, float], angle_rad: Array | float) ->
         (*S, 3, 3).
     """
     x, y, z = axis
-    angle = np.asarray(angle_rad, dtype=np.float64)[..., None, None]
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross))
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+    rest = 1.0 - cos
+    turn = np.array(
+        [
+            [x * x * rest + cos, x * y * rest - z * sin, x * z * rest + y * sin],
+            [x * y * rest + z * sin, y * y * rest + cos, y * z * rest - x * sin],
+            [x * z * rest - y * sin, y * z * rest + x * sin, z * z * rest + cos],
+        ]
+    )
+    return np.moveaxis(turn, (0, 1), (-2, -1)) if turn.ndim > 2 else turn
 
 
 def about_x(angle_rad: Array | float) -> Array:
@@ -64,7 +71,14 @@ def basis(first: Array, second: Array) -> Array:
     x = first / np.linalg.norm(first)
     y = second - x * float(x @ second)
     y = y / np.linalg.norm(y)
-    return np.stack([x, y, np.cross(x, y)], axis=1)
+    return np.stack([x, y, cross(x, y)], axis=1)
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross product of two (3,) vectors; numpy's own is slow for single ones."""
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
 
 
 def rotation_vectors(rotations: Array) -> Array:

@@ -138,7 +138,7 @@ def floor_vase() -> Asset:
     straw = Material("straw", (0.66, 0.50, 0.28, 1.0), specular=0.0, shininess=0.0)
     return furniture(
         "Vase",
-        (0.44, 0.40, 1.09),
+        (0.28, 0.381, 1.078),
         [body.part(clay), stems.part(straw)],
         (
             Collider("cylinder", (0.138, 0.170, 0.0), (0.0, 0.0, 0.170)),

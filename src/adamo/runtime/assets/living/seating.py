@@ -31,7 +31,7 @@ def sofa() -> Asset:
     frame = rounded_box(_WIDTH, _DEPTH - 0.06, 0.17, 0.025, 2).moved(z=0.205)
     spine = rounded_box(_WIDTH - 0.06, 0.15, 0.58, 0.05, 2).moved(0.0, _DEPTH / 2 - 0.075, 0.41)
     arms = [
-        rounded_box(_ARM, _DEPTH - 0.03, 0.48, 0.055, 4).moved(s * _ARM_X, -0.015, 0.36)
+        rounded_box(_ARM, _DEPTH - 0.03, 0.48, 0.055, 3).moved(s * _ARM_X, -0.015, 0.36)
         for s in (-1, 1)
     ]
     seats = [
@@ -44,7 +44,7 @@ def sofa() -> Asset:
     ]
     cover = draped(merge((frame, spine, *arms, *seats, *backs)))
     legs = merge(
-        cylinder(0.016, 0.125, top_radius=0.024, segments=16).moved(sx * 1.22, sy * 0.38, 0.0625)
+        cylinder(0.016, 0.125, top_radius=0.024, segments=10).moved(sx * 1.22, sy * 0.38, 0.0625)
         for sx in (-1, 1)
         for sy in (-1, 1)
     )

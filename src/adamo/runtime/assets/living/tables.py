@@ -172,7 +172,7 @@ def _knob(x: float, y: float, z: float) -> Mesh:
 
 def _back_post(x: float) -> Mesh:
     """Rear leg that goes on as the post of the back, leaning away above the seat."""
-    path = np.array(((x, 0.215, 0.0), (x, 0.190, 0.25), (x, 0.190, 0.46), (x, 0.233, 0.880)))
+    path = np.array(((x, 0.215, 0.0017), (x, 0.190, 0.25), (x, 0.190, 0.46), (x, 0.233, 0.880)))
     post = sweep(rectangle(0.034, 0.034, 0.006, 2), path, up=(0.0, -1.0, 0.0))
     return box_mapped(post, (0.9, 0.45), "z", x)
 

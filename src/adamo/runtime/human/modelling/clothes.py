@@ -151,7 +151,7 @@ def collar(v: Variant) -> Shape:
             (0.066 * r, 0.066 * r, 0.061 * r), 0.02,
         )  # fmt: skip
         roll = common(0.01, outer, half_space((0.0, 0, 1.487), (-0.22, 0, 1.0)))
-        return minus(0.008, common(0.004, roll, half_space((0, 0, 1.40), (0.3, 0, -1.0))), inner)
+        return minus(0.008, common(0.004, roll, half_space((0, 0, 1.405), (-0.42, 0, -1.0))), inner)
     if v.neckline == "shirt":
         return _shirt_collar(r)
     ring = _ring((-0.006, 0.0, 1.427), 0.064 * r, 0.060 * r, 0.0078, 0.40)

@@ -42,11 +42,11 @@ def skull(v: Variant) -> Shape:
 def head(v: Variant) -> Shape:
     """The head and the neck with eye sockets."""
     f = v.feminine
-    face = ellipsoid((0.026, 0.0, 1.568), (0.060, mix(v, 0.064, 0.0590), 0.086))
+    face = ellipsoid((0.026, 0.0, 1.568), (0.060, mix(v, 0.0615, 0.0590), 0.086))
     jaw = mirrored(
         chain(
-            ((0.000, mix(v, 0.050, 0.046), 1.556), (0.022, mix(v, 0.0480, 0.0375), 1.521), (0.066, 0.012, 1.492)),
-            (0.020, mix(v, 0.0160, 0.0135), mix(v, 0.0165, 0.014)),
+            ((0.000, mix(v, 0.048, 0.046), 1.556), (0.022, mix(v, 0.0425, 0.0375), 1.521), (0.066, 0.012, 1.492)),
+            (0.020, mix(v, 0.0150, 0.0135), mix(v, 0.0165, 0.014)),
             0.015,
         )
     )
@@ -226,7 +226,7 @@ def _grid(rows: int, columns: int) -> Array:
 
 def brows(v: Variant) -> Shape:
     """The left brow, to be laid on the face."""
-    r = mix(v, 0.0042, 0.0030)
+    r = mix(v, 0.0036, 0.0029)
     high = mix(v, 0.0, 0.0025)
     t = np.linspace(0.0, 1.0, 9)
     y = 0.0130 + 0.0405 * t

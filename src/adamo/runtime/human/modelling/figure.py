@@ -17,6 +17,7 @@ from adamo.runtime.human.modelling.hands import hand
 from adamo.runtime.human.modelling.meshing import (
     Mesh,
     daylight,
+    largest,
     merged,
     polygonize,
     vertex_normals,
@@ -70,7 +71,7 @@ class _Sculptor:
         return Figure(self.v.name, garments)
 
     def _head_garments(self) -> tuple[Garment, ...]:
-        mesh = polygonize(self.head, (-0.13, -0.135, 1.34), (0.13, 0.135, 1.73), 0.0018, 11000, 3)
+        mesh = polygonize(self.head, (-0.13, -0.135, 1.34), (0.13, 0.135, 1.73), 0.0018, 9600, 3)
         mesh = without_hidden(mesh, grown(self.hair, 0.0), 0.006)
         mesh = without_hidden(mesh, union(0.0, self.top, clothes.collar(self.v)), 0.006)
         mesh, uvs = _unrolled(mesh)
@@ -113,19 +114,18 @@ class _Sculptor:
         return _plain("lashes", mesh, rigid(len(mesh.vertices), "eyelids"), picture, 0.7)
 
     def _hair(self) -> Garment:
-        mesh = polygonize(self.hair, (-0.19, -0.15, 1.40), (0.13, 0.15, 1.78), 0.0028, 4800, 2)
-        mesh = without_hidden(mesh, self.head, 0.012)
+        mesh = polygonize(self.hair, (-0.19, -0.15, 1.40), (0.13, 0.15, 1.78), 0.0028, 4500, 4)
+        mesh = largest(without_hidden(mesh, self.head, 0.012))
         normals = mesh.normals()
         light = daylight(mesh.vertices, normals, union(0.0, self.hair, self.head))
         u = hair.strand(self.v, mesh.vertices) / 64.0 + 0.5
         uvs = np.column_stack([np.clip(u, 0.01, 0.99), _rows(light)])
-        loose = ("head", "neck") if self.v.hair_style in ("bob", "ponytail") else ("head",)
-        bound = bind(mesh.vertices, loose) if False else rigid(len(mesh.vertices), "head")
+        bound = rigid(len(mesh.vertices), "head")
         return _garment("hair", mesh, uvs, bound, paint.strands_picture(self.v), 0.25, 0.35)
 
     def _hands(self) -> Garment:
         low, high = (-0.03, 0.46, 0.78), (0.12, 0.68, 1.06)
-        left = polygonize(hand(self.v), low, high, 0.0018, 1480, 3)
+        left = polygonize(hand(self.v), low, high, 0.0018, 1400, 3)
         sleeve = clothes.sleeve(self.v)
         left = without_hidden(left, sleeve, 0.004)
         left = Mesh(left.vertices, left.faces)
@@ -136,7 +136,7 @@ class _Sculptor:
         return _garment("hands", mesh, uvs, bound, paint.palette([self.v.skin], 0.7, 0.55), 0.12, 0.2)
 
     def _top(self) -> Garment:
-        mesh = polygonize(self.top, (-0.17, -0.60, 0.86), (0.17, 0.60, 1.50), 0.0055, 4700, 2)
+        mesh = polygonize(self.top, (-0.17, -0.60, 0.86), (0.17, 0.60, 1.50), 0.0055, 4500, 2)
         mesh = without_hidden(mesh, union(0.0, self.trousers, grown(self.head, -0.006)), 0.012)
         trim = _trim_of_top(mesh.vertices)
         return self._cloth("top", mesh, [self.v.top, self.v.trim], trim)

@@ -56,10 +56,13 @@ def strand(v: Variant, p: Array) -> Array:
 
 
 def _strands(v: Variant, depth_m: float) -> Shape:
+    edge = hairline(v)
+
     def field(p: Array) -> Array:
         s = strand(v, p)
         wave = np.sin(2 * np.pi * s) + 0.6 * np.sin(2 * np.pi * s * 0.43 + 30 * p[:, 2] + 1.0)
-        return depth_m * wave
+        # The edge stays a clean line.
+        return depth_m * wave * np.clip(-edge(p) / 0.012, 0.1, 1.0)
 
     return field
 
@@ -75,11 +78,11 @@ def _short(v: Variant) -> Shape:
         ((0, 1.674), (35, 1.668), (55, 1.645), (90, 1.640), (180, 1.60))))
     tuft = union(
         0.016,
-        chain(((0.060, -0.040, 1.682), (0.072, 0.000, 1.698), (0.056, 0.038, 1.700)), (0.016, 0.021, 0.018), 0.01),
-        chain(((0.030, -0.045, 1.700), (0.042, 0.000, 1.716), (0.024, 0.040, 1.708)), (0.016, 0.017, 0.015), 0.01),
-        chain(((-0.01, -0.045, 1.702), (0.000, 0.000, 1.718), (-0.01, 0.040, 1.708)), (0.014, 0.014, 0.014), 0.01),
+        chain(((0.058, -0.040, 1.680), (0.070, 0.000, 1.691), (0.054, 0.038, 1.692)), (0.016, 0.021, 0.018), 0.01),
+        chain(((0.030, -0.045, 1.692), (0.042, 0.000, 1.706), (0.024, 0.040, 1.700)), (0.016, 0.017, 0.015), 0.01),
+        chain(((-0.01, -0.045, 1.694), (0.000, 0.000, 1.707), (-0.01, 0.040, 1.700)), (0.014, 0.014, 0.014), 0.01),
     )
-    return displaced(union(0.014, cap, crown, tuft), _strands(v, 0.0014))
+    return displaced(union(0.014, cap, crown, tuft), _strands(v, 0.0011))
 
 
 def _bob(v: Variant) -> Shape:
@@ -119,11 +122,13 @@ def _curls(v: Variant) -> Shape:
     cap = common(0.02, union(0.02, grown(skull(v), 0.012),
                              ellipsoid((-0.024, 0.0, 1.650), (0.118, 0.112, 0.098))), _above(line))
 
+    edge = _above(line)
+
     def curls(p: Array) -> Array:
         q = p * (2 * np.pi / 0.034)
         bumps = np.sin(q[:, 0] + 1.3 * np.sin(q[:, 1] * 0.6)) * np.sin(q[:, 1] + 1.1 * np.sin(q[:, 2] * 0.7)) + np.sin(
             q[:, 2] + 1.2 * np.sin(q[:, 0] * 0.5)) * np.sin(q[:, 1] * 0.9 + 0.5)
-        return 0.0055 * bumps
+        return 0.0042 * bumps * np.clip(-edge(p) / 0.02, 0.25, 1.0)
 
     return displaced(cap, curls)
 

@@ -123,6 +123,18 @@ def without_hidden(mesh: Mesh, cover: Shape, depth_m: float) -> Mesh:
     return compact(Mesh(mesh.vertices, mesh.faces[~hidden[mesh.faces].all(axis=1)]))
 
 
+def largest(mesh: Mesh) -> Mesh:
+    """Drop everything that is not connected to the largest piece."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    i, j = mesh.faces[:, [0, 1]].ravel(), mesh.faces[:, [1, 2]].ravel()
+    count = len(mesh.vertices)
+    _, piece = connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(count, count)))
+    keep = piece[mesh.faces[:, 0]] == np.bincount(piece[mesh.faces[:, 0]]).argmax()
+    return compact(Mesh(mesh.vertices, mesh.faces[keep]))
+
+
 def compact(mesh: Mesh) -> Mesh:
     """Drop the vertices that no triangle uses."""
     used, faces = np.unique(mesh.faces, return_inverse=True)

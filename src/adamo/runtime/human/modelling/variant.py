@@ -53,7 +53,7 @@ PEOPLE: dict[str, Variant] = {
         ),
         Variant(
             name="amina", skin=(128, 80, 54), lips=(134, 62, 58), hair=(38, 27, 24),
-            iris=(62, 38, 22), top=(150, 46, 58), trim=(124, 34, 46), trousers=(84, 82, 58),
+            iris=(62, 38, 22), top=(130, 42, 52), trim=(106, 32, 42), trousers=(84, 82, 58),
             shoes=(86, 58, 44), soles=(48, 40, 36), hair_style="curls", neckline="roll",
             feminine=1.0, girth=1.02, blush=0.35,
         ),
