@@ -172,7 +172,7 @@ def plate() -> Asset:
         ),
         1024,
     )
-    parts = (_glazed(revolve(profile, 80), "glaze", (1.0, 1.0, 1.0, 1.0), picture),)
+    parts = (_glazed(revolve(profile, 52), "glaze", (1.0, 1.0, 1.0, 1.0), picture),)
     return Asset(
         class_name="Plate",
         size=size,
