@@ -44,21 +44,25 @@ POSES: dict[str, tuple[Bend, float]] = {
     ),
     "reach": (
         {
-            **_ARMS_DOWN, "spine": (0, 10, 0), "upper_arm_l": (-34, -72, 0), "forearm_l": (0, -18, 0),
-            "upper_arm_r": (27, 10, 0), "fingers_l": (-25, 0, 0), "head": (0, 12, 0),
+            **_ARMS_DOWN, "spine": (0, 10, 0), "upper_arm_l": (-34, -72, 0),
+            "forearm_l": (0, -18, 0), "upper_arm_r": (27, 10, 0),
+            "fingers_l": (-25, 0, 0), "head": (0, 12, 0),
         }, 0.0,
     ),
     "crouch": (
         {
-            **_ARMS_DOWN, "pelvis": (0, 24, 0), "spine": (0, 16, 0), "thigh_l": (0, -112, 0), "thigh_r": (0, -112, 0),
-            "shin_l": (0, 118, 0), "shin_r": (0, 118, 0), "foot_l": (0, -30, 0), "foot_r": (0, -30, 0),
+            **_ARMS_DOWN, "pelvis": (0, 24, 0), "spine": (0, 16, 0),
+            "thigh_l": (0, -112, 0), "thigh_r": (0, -112, 0),
+            "shin_l": (0, 118, 0), "shin_r": (0, 118, 0),
+            "foot_l": (0, -30, 0), "foot_r": (0, -30, 0),
             "upper_arm_l": (-27, -75, 0), "upper_arm_r": (27, -75, 0), "neck": (0, -20, 0),
         }, -0.40,
     ),
     "bent_elbow": (
         {
             "upper_arm_l": (-30, -12, 0), "forearm_l": (0, -112, 0), "fingers_l": (-70, 0, 0),
-            "upper_arm_r": (-50, 0, 0), "head": (0, 0, 30), "eyelids": (0, math.degrees(LIDS_CLOSED_RAD), 0),
+            "upper_arm_r": (-50, 0, 0), "head": (0, 0, 30),
+            "eyelids": (0, math.degrees(LIDS_CLOSED_RAD), 0),
         }, 0.0,
     ),
 }  # fmt: skip
@@ -112,11 +116,11 @@ def stage(name: str) -> mujoco.MjSpec:
     spec.visual.headlight.ambient = (0.42, 0.42, 0.42)
     spec.visual.headlight.diffuse = (0.30, 0.30, 0.30)
     spec.visual.headlight.specular = (0.0, 0.0, 0.0)
-    sky = spec.add_texture(
+    spec.add_texture(
         name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=64, height=384,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT, rgb1=(0.80, 0.79, 0.77), rgb2=(0.62, 0.60, 0.57),
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
+        rgb1=(0.80, 0.79, 0.77), rgb2=(0.62, 0.60, 0.57),
     )  # fmt: skip
-    assert sky is not None
     spec.stat.extent, spec.stat.center = 1.0, (0.0, 0.0, 0.9)
     floor = mujoco.mjtGeom.mjGEOM_PLANE
     spec.worldbody.add_geom(type=floor, size=(20, 20, 0.1), rgba=(0.66, 0.62, 0.57, 1))

@@ -10,6 +10,7 @@ import pytest
 
 from adamo.action import Code, Outcome
 from adamo.engine import FLOOR, WorldState
+from adamo.errors import EngineError
 from adamo.geometry import Vec3
 from adamo.observation import NOTHING
 from adamo.runtime.builtin import BuiltinEngine
@@ -239,3 +240,25 @@ def test_what_is_said_is_delivered(engine: BuiltinEngine) -> None:
     assert list(engine.said) == ["Done."]
     engine.reset(0)
     assert list(engine.said) == []
+
+
+def test_a_snapshot_goes_on_the_same_way(engine: BuiltinEngine) -> None:
+    engine.pick(PLATE)
+    kept = engine.snapshot()
+    at = engine.state()
+    engine.drop(Vec3(-1.6, -2.4, 0.0))
+    engine.pick(BOTTLE)
+    end = engine.state().hash()
+    engine.restore(kept)
+    assert engine.state() == at
+    engine.drop(Vec3(-1.6, -2.4, 0.0))
+    engine.pick(BOTTLE)
+    assert engine.state().hash() == end
+
+
+def test_a_damaged_snapshot_is_refused(engine: BuiltinEngine) -> None:
+    before = engine.state().hash()
+    for damaged in (b"", b"nonsense", engine.snapshot()[:50]):
+        with pytest.raises(EngineError, match="damaged"):
+            engine.restore(damaged)
+    assert engine.state().hash() == before

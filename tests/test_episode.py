@@ -179,6 +179,44 @@ def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
     assert len(read_trajectory(folder).acts) >= 4
     assert read_result(folder) is None
     assert adamo.replay_episode(folder).mismatches == ()
+    resumed = adamo.resume_episode(folder)
+    assert resumed.steps == 55
+    straight = adamo.run_episode("Look around", model=f"scripted:{script}", resolution=(480, 270))
+    assert resumed.state_hash == straight.state_hash
+    assert [act.step for act in read_trajectory(folder).acts] == list(range(1, 56))
+    assert adamo.replay_episode(folder).mismatches == ()
+    with pytest.raises(RecordError, match="has ended"):
+        adamo.resume_episode(folder)
+
+
+@pytest.mark.parametrize("kept_lines", range(1, 11))
+def test_an_episode_resumes_from_any_moment(
+    kept_lines: int, script: Path, tmp_path: Path, engine: BuiltinEngine
+) -> None:
+    """Cut the record after any line, even in the middle of the next: the end is the same."""
+    folder = tmp_path / "run"
+    whole = recorded(script, folder, engine)
+    path = folder / EVENTS
+    lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join(lines[:kept_lines]) + lines[kept_lines][:20])
+    (folder / "result.json").unlink()
+    again = adamo.resume_episode(folder)
+    assert again.state_hash == whole.state_hash
+    assert (again.completion, again.steps, again.calls) == (1.0, whole.steps, whole.calls)
+    types = [json.loads(line)["type"] for line in path.read_bytes().splitlines()]
+    assert types == [json.loads(line)["type"] for line in lines]
+    assert adamo.replay_episode(folder).mismatches == ()
+
+
+@pytest.mark.parametrize("start", [0, 1, 2, 3])
+def test_a_replay_can_start_at_any_step(
+    start: int, script: Path, tmp_path: Path, engine: BuiltinEngine
+) -> None:
+    recorded(script, tmp_path / "run", engine)
+    report = adamo.replay_episode(tmp_path / "run", start)
+    assert (report.steps, report.mismatches, report.frames_differ) == (3 - start, (), 0)
+    with pytest.raises(RecordError, match="steps 0 to 3"):
+        adamo.replay_episode(tmp_path / "run", 4)
 
 
 def test_damaged_records_are_named(script: Path, tmp_path: Path, engine: BuiltinEngine) -> None:

@@ -8,17 +8,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from adamo.assemble import create_engine, replay_episode, run_episode
+    from adamo.assemble import create_engine, replay_episode, resume_episode, run_episode
     from adamo.benchmark.episode import EpisodeResult
     from adamo.errors import AdamoError
 
-__all__ = ["AdamoError", "EpisodeResult", "create_engine", "replay_episode", "run_episode"]
+__all__ = [
+    "AdamoError",
+    "EpisodeResult",
+    "create_engine",
+    "replay_episode",
+    "resume_episode",
+    "run_episode",
+]
 
 _HOME = {
     "AdamoError": "adamo.errors",
     "EpisodeResult": "adamo.benchmark.episode",
     "create_engine": "adamo.assemble",
     "replay_episode": "adamo.assemble",
+    "resume_episode": "adamo.assemble",
     "run_episode": "adamo.assemble",
 }
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -23,6 +22,7 @@ from adamo.benchmark.episode import (
     write_record,
 )
 from adamo.benchmark.page import write_page
+from adamo.benchmark.replay import ReplayReport, replay
 from adamo.benchmark.tasks import task as find_task
 from adamo.cognition.agent import Agent
 from adamo.cognition.instructions import system_prompt
@@ -34,10 +34,11 @@ from adamo.cognition.trajectory import (
     read_trajectory,
 )
 from adamo.engine import Engine
-from adamo.errors import ConfigError
+from adamo.errors import ConfigError, RecordError
 from adamo.inference.messages import AIMessage
-from adamo.inference.model import Model, ModelKind, Sampling
+from adamo.inference.model import Model, ModelKind, Reply, Sampling
 from adamo.inference.registry import create_model
+from adamo.inference.resumed import Resumed
 from adamo.inference.scripted import ScriptedModel
 from adamo.perception import Labeling, PerceptionConfig, TextForm
 
@@ -123,42 +124,47 @@ def run_episode(
     )
     player = _model(model) if isinstance(model, str) else model
     folder = None if out is None else Path(out)
+    writer = None if folder is None else TrajectoryWriter(folder)
     world = engine or create_engine(config.scene)
     try:
-        return _play(config, player, world, folder, tools, observers)
+        world.reset(config.seed)
+        manifest = _manifest(config, player, world)
+        if folder is not None:
+            write_record(folder, MANIFEST, manifest)
+        record = None if writer is None or folder is None else (writer, folder)
+        return _play(manifest, player, world, record, tools, observers)
     finally:
         if engine is None:
             world.close()
 
 
-def _play(
-    config: EpisodeConfig,
-    model: Model,
-    engine: Engine,
-    folder: Path | None,
-    tools: Sequence[Tool],
-    observers: Sequence[Observer],
-) -> EpisodeResult:
-    trajectory = Trajectory()
-    writer = None if folder is None else TrajectoryWriter(folder)
-    recorders = (trajectory,) if writer is None else (writer, trajectory)
-    engine.reset(config.seed)
-    manifest = Manifest(
-        config,
-        model.name,
-        model.kind,
-        {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}},
-        datetime.now(UTC).isoformat(timespec="seconds"),
-        engine.state(),
-    )
-    if folder is not None:
-        write_record(folder, MANIFEST, manifest)
-    server = LocalActionServer(
+def _manifest(config: EpisodeConfig, model: Model, engine: Engine) -> Manifest:
+    versions = {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}}
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    return Manifest(config, model.name, model.kind, versions, now, engine.state())
+
+
+def _server(config: EpisodeConfig, engine: Engine, tools: Sequence[Tool]) -> LocalActionServer:
+    return LocalActionServer(
         engine,
         perception=PerceptionConfig(labeling=config.labeling, grid=config.grid),
         resolution=config.resolution,
         tools=tools,
     )
+
+
+def _play(
+    manifest: Manifest,
+    model: Model,
+    engine: Engine,
+    record: tuple[TrajectoryWriter, Path] | None,
+    tools: Sequence[Tool],
+    observers: Sequence[Observer],
+) -> EpisodeResult:
+    """Play an episode on an engine that was just reset, and write its result."""
+    config, trajectory = manifest.config, Trajectory()
+    writer, folder = record or (None, None)
+    server = _server(config, engine, tools)
     agent = Agent(
         model,
         server,
@@ -167,7 +173,7 @@ def _play(
         text_form=config.text_form,
         sampling=config.sampling,
         limits=config.limits,
-        observers=(*recorders, *observers),
+        observers=(*((writer,) if writer else ()), trajectory, *observers),
     )
     try:
         agent.run(config.instruction)
@@ -199,11 +205,16 @@ def _choice(kind: type[_E], value: str, what: str) -> _E:
         raise ConfigError(f"There is no {what} {value!r}. Use one of {offer}.") from None
 
 
-def _model(uri: str) -> Model:
+def _model(uri: str, answered: int = 0) -> Model:
+    """The model of a URI; of one that answers from a list, the first answers were given before."""
     if uri.startswith(_REPLAY):
         folder = Path(uri.removeprefix(_REPLAY))
-        return recorded_model(read_trajectory(folder), uri)
-    return create_model(uri)
+        model: Model = recorded_model(read_trajectory(folder), uri)
+    else:
+        model = create_model(uri)
+    if isinstance(model, ScriptedModel):
+        model.skip(answered)
+    return model
 
 
 def recorded_model(trajectory: Trajectory, name: str) -> Model:
@@ -212,51 +223,59 @@ def recorded_model(trajectory: Trajectory, name: str) -> Model:
     return ScriptedModel(name, said, kind=ModelKind.REPLAY)
 
 
-@dataclass(frozen=True, slots=True)
-class ReplayReport:
-    """Whether a recorded episode came out the same when it was executed again."""
-
-    steps: int
-    """Actions executed again."""
-    mismatches: tuple[str, ...]
-    """What differed, in order; empty if every state hash is the same."""
-    frames_differ: int
-    """Frames with other bytes: possible on another machine, no error there."""
-
-
-def replay_episode(folder: str | Path) -> ReplayReport:
+def replay_episode(folder: str | Path, start: int = 0) -> ReplayReport:
     """Execute a recorded episode again without its model and compare every state hash.
 
+    Args:
+        folder: A run folder.
+        start: Begin after this many steps, from the state that was saved there.
+
     Raises:
-        RecordError: The folder holds no readable run.
+        RecordError: The folder holds no readable run, or has no such step.
     """
     path = Path(folder)
     manifest, recorded = read_manifest(path), read_trajectory(path)
     engine = create_engine(manifest.config.scene)
-    again = Trajectory()
-    model = recorded_model(recorded, f"{_REPLAY}{path}")
-    steps = len(recorded.acts)
-    config = replace(manifest.config, limits=Limits(max_steps=max(1, steps)))
+    engine.reset(manifest.config.seed)
     try:
-        _play(config, model, engine, None, PAPER_TOOLS, (again,))
+        return replay(_server(manifest.config, engine, PAPER_TOOLS), recorded, start)
     finally:
         engine.close()
-    return _compare(recorded, again)
 
 
-def _compare(recorded: Trajectory, again: Trajectory) -> ReplayReport:
-    mismatches = [
-        f"step {then.step}: {then.name} led to state {now.state_hash[:12]}, "
-        f"recorded {then.state_hash[:12]}"
-        for then, now in zip(recorded.acts, again.acts, strict=False)
-        if then.state_hash != now.state_hash
+def resume_episode(
+    folder: str | Path,
+    *,
+    model: Model | None = None,
+    tools: Sequence[Tool] = PAPER_TOOLS,
+    observers: Sequence[Observer] = (),
+) -> EpisodeResult:
+    """Go on with an episode that was interrupted at any moment.
+
+    What was recorded is executed again, with the recorded answers in place of the model's; from
+    there the model goes on. Nothing is asked or written twice.
+
+    Args:
+        folder: Its run folder.
+        model: Who goes on; by default the model that the manifest names.
+        tools: The body's primitives, as when it began.
+        observers: Are told of every event, the repeated ones too.
+
+    Raises:
+        RecordError: The folder holds no run, or one that has ended.
+    """
+    path = Path(folder)
+    manifest, recorded = read_manifest(path), read_trajectory(path)
+    if recorded.ended is not None:
+        raise RecordError(f"{path} has ended ({recorded.ended.reason}); nothing is left to resume.")
+    said = [
+        Reply(AIMessage(t.note, t.calls), t.usage, t.model_s, t.waited_s) for t in recorded.thoughts
     ]
-    if len(recorded.acts) != len(again.acts):
-        mismatches.append(f"{len(recorded.acts)} actions recorded, {len(again.acts)} executed")
-    then_end, now_end = recorded.ended, again.ended
-    if then_end and now_end and then_end.state_hash != now_end.state_hash:
-        mismatches.append("the final states differ")
-    frames = zip(recorded.views, again.views, strict=False)
-    return ReplayReport(
-        len(again.acts), tuple(mismatches), sum(a.frame != b.frame for a, b in frames)
-    )
+    player = Resumed(said, model or _model(manifest.config.model, answered=len(said)))
+    writer = TrajectoryWriter(path, known=len(recorded.events))
+    engine = create_engine(manifest.config.scene)
+    try:
+        engine.reset(manifest.config.seed)
+        return _play(manifest, player, engine, (writer, path), tools, observers)
+    finally:
+        engine.close()

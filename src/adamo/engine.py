@@ -195,6 +195,18 @@ class Engine(Protocol):
         """The whole truth, as plain data."""
         ...
 
+    def snapshot(self) -> bytes:
+        """Everything that decides what happens next: world, body, what it holds."""
+        ...
+
+    def restore(self, snapshot: bytes) -> None:
+        """Go back to a snapshot, also one of another process; the same calls then give the same states.
+
+        Raises:
+            EngineError: It is damaged or belongs to another scene.
+        """
+        ...
+
     def close(self) -> None:
         """Free graphics and memory; the engine cannot be used afterwards."""
         ...

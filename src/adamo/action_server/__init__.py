@@ -1,7 +1,7 @@
 """The Action Server: carries tool calls out in an engine and tells what became of them."""
 
 from adamo.action_server.local import LocalActionServer
-from adamo.action_server.protocol import ActionResult, ActionServer
+from adamo.action_server.protocol import ActionResult, ActionServer, execute_call
 from adamo.action_server.tools import PAPER_TOOLS, Tool, ToolContext
 
 __all__ = [
@@ -11,4 +11,5 @@ __all__ = [
     "LocalActionServer",
     "Tool",
     "ToolContext",
+    "execute_call",
 ]

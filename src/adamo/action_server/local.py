@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from adamo.action import Action, Code, Feedback, Outcome, action_name
 from adamo.action_server.protocol import ActionResult
 from adamo.action_server.tools import PAPER_TOOLS, Tool
 from adamo.engine import Engine
-from adamo.errors import InvalidActionError
+from adamo.errors import EngineError, InvalidActionError
 from adamo.observation import AgentState, Observation
 from adamo.perception import PerceptionConfig, agent_state, perceive
 
@@ -92,7 +96,7 @@ class LocalActionServer:
         view = None
         if feedback.outcome is not Outcome.REFUSED:
             view = self.observe() if action_name(type(action)) in self._refresh_after else None
-        return ActionResult(feedback, self.agent(), view, self.state_hash())
+        return ActionResult(feedback, self.agent(), view, self.state_hash(), self.save())
 
     def agent(self) -> AgentState:
         """The body now, in the agent's words."""
@@ -105,3 +109,31 @@ class LocalActionServer:
     def state_hash(self) -> str:
         """Digest of the world now."""
         return self.engine.state().hash()
+
+    def save(self) -> str:
+        """World, body and what was seen so far, as text."""
+        saved = _Saved(self.engine.snapshot(), tuple(sorted(self._seen)))
+        return TypeAdapter(_Saved).dump_json(saved).decode()
+
+    def load(self, saved: str) -> None:
+        """Go back to what `save` gave.
+
+        Raises:
+            EngineError: The text is damaged or belongs to another scene.
+        """
+        try:
+            kept = TypeAdapter(_Saved).validate_json(saved)
+        except ValidationError as error:
+            raise EngineError(f"The saved state is damaged: {error.errors()[0]['msg']}") from None
+        self.engine.restore(kept.engine)
+        self._seen = set(kept.seen)
+
+
+@dataclass(frozen=True, slots=True)
+class _Saved:
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(
+        ser_json_bytes="base64", val_json_bytes="base64"
+    )
+
+    engine: bytes
+    seen: tuple[int, ...]

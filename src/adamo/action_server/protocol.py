@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
-from adamo.action import Action, Feedback
+from adamo.action import Action, Feedback, parse
+from adamo.errors import InvalidActionError
 from adamo.observation import AgentState, Observation
 
 
@@ -20,6 +22,8 @@ class ActionResult:
     """A new view, if the refresh rule grants one for this action."""
     state_hash: str
     """Digest of the world after the action; reveals nothing, proves replays."""
+    saved: str
+    """What `ActionServer.save` gives after the action."""
 
 
 class ActionServer(Protocol):
@@ -53,3 +57,27 @@ class ActionServer(Protocol):
     def state_hash(self) -> str:
         """Digest of the world now."""
         ...
+
+    def save(self) -> str:
+        """World, body and what was seen so far, as text: enough to go on from here elsewhere."""
+        ...
+
+    def load(self, saved: str) -> None:
+        """Go back to what `save` gave.
+
+        Raises:
+            EngineError: The text is damaged or belongs to another scene.
+        """
+        ...
+
+
+def execute_call(
+    server: ActionServer, name: str, arguments: Mapping[str, Any] | None
+) -> ActionResult:
+    """Carry a model's tool call out; one that is no valid action is refused and changes nothing."""
+    try:
+        action = parse(name, arguments, server.actions)
+    except InvalidActionError as error:
+        feedback = Feedback.of_error(error)
+        return ActionResult(feedback, server.agent(), None, server.state_hash(), server.save())
+    return server.execute(action)

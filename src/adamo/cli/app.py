@@ -42,11 +42,17 @@ def run(
     out: Annotated[
         Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
     ] = None,
+    resume: Annotated[
+        Path | None, typer.Option(help="Go on with an interrupted run; takes no other setting.")
+    ] = None,
     json: Json = False,
 ) -> None:
     """Run one episode: an instruction in plain words, or a task of the benchmark."""
-    from adamo.cli.episode import run_and_show
+    from adamo.cli.episode import resume_and_show, run_and_show
 
+    if resume is not None:
+        resume_and_show(resume, as_json=json)
+        return
     run_and_show(
         instruction,
         as_json=json,
@@ -66,12 +72,14 @@ def run(
 
 @app.command()
 def replay(
-    run_dir: Annotated[Path, typer.Argument(help="A run folder.")], json: Json = False
+    run_dir: Annotated[Path, typer.Argument(help="A run folder.")],
+    start: Annotated[int, typer.Option("--from", help="Begin after this many steps.")] = 0,
+    json: Json = False,
 ) -> None:
     """Execute a recorded episode again, without its model, and verify every state hash."""
     from adamo.cli.episode import replay_and_show
 
-    replay_and_show(run_dir, as_json=json)
+    replay_and_show(run_dir, start, as_json=json)
 
 
 @app.command()

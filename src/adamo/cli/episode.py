@@ -43,6 +43,18 @@ def run_and_show(
     )
     if out is None:
         _mark_latest(folder)
+    _show(result, folder, as_json=as_json)
+
+
+def resume_and_show(folder: Path, *, as_json: bool) -> None:
+    """Go on with an interrupted run."""
+    from adamo.assemble import resume_episode
+
+    progress = () if as_json else (Progress(Console()),)
+    _show(resume_episode(folder, observers=progress), folder, as_json=as_json)
+
+
+def _show(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
     if as_json:
         typer.echo(json.dumps(result_json(result)))
     else:
@@ -51,11 +63,11 @@ def run_and_show(
         raise typer.Exit(1)
 
 
-def replay_and_show(run_dir: Path, *, as_json: bool) -> None:
+def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
     """Replay a run folder and say whether every state came out the same."""
     from adamo.assemble import replay_episode
 
-    report = replay_episode(run_dir)
+    report = replay_episode(run_dir, start)
     same = not report.mismatches
     if as_json:
         found = {"steps": report.steps, "same": same, "mismatches": report.mismatches}

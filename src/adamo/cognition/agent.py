@@ -5,19 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from adamo.action import Feedback, parse, tool_schema
-from adamo.action_server import ActionResult, ActionServer
+from adamo.action import tool_schema
+from adamo.action_server import ActionServer, execute_call
 from adamo.cognition.memory import ShortTermMemory
 from adamo.cognition.prompts import render
 from adamo.cognition.termination import Limits, Stopwatch, TerminationReason
 from adamo.cognition.trajectory import Acted, Ended, Event, Observer, Started, Thought, observed
-from adamo.errors import AdamoError, InvalidActionError
+from adamo.errors import AdamoError
 from adamo.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
     TextPart,
-    ToolCall,
     ToolMessage,
 )
 from adamo.inference.model import Model, Sampling
@@ -97,33 +96,35 @@ class Agent:
         """Execute the first call; answer further ones without executing them."""
         call, *further = message.calls
         started = time.monotonic()
-        feedback, result = self._execute(call)
+        result = execute_call(self._server, call.name, call.arguments)
         seconds = time.monotonic() - started
         answers = (
-            ToolMessage(call.id, call.name, feedback.text),
+            ToolMessage(call.id, call.name, result.feedback.text),
             *(ToolMessage(other.id, other.name, _ONE_A_TURN) for other in further),
         )
-        view = result.observation if result else None
+        view = result.observation
         frame = () if view is None else (_frame_message(view),)
         self._memory.add_step(message, *answers, *frame)
-        agent = result.agent if result else self._server.agent()
-        digest = result.state_hash if result else self._server.state_hash()
         self._steps += 1
-        self._tell(Acted(self._steps, call.name, call.arguments, feedback, agent, digest, seconds))
+        self._tell(
+            Acted(
+                self._steps,
+                call.name,
+                call.arguments,
+                result.feedback,
+                result.agent,
+                result.state_hash,
+                result.saved,
+                seconds,
+            )
+        )
         self._perceived(view)
-
-    def _execute(self, call: ToolCall) -> tuple[Feedback, ActionResult | None]:
-        try:
-            action = parse(call.name, call.arguments, self._server.actions)
-        except InvalidActionError as error:
-            return Feedback.of_error(error), None
-        result = self._server.execute(action)
-        return result.feedback, result
 
     def _begin(self, instruction: str) -> None:
         self._watch = Stopwatch()
         self._steps = 0
-        self._tell(Started(instruction, self._system_prompt, self._server.state_hash()))
+        server = self._server
+        self._tell(Started(instruction, self._system_prompt, server.state_hash(), server.save()))
         self._view = self._server.observe()
         first = HumanMessage((TextPart(instruction), _image(self._view.frame)))
         self._memory.begin(first, self._state_text())

@@ -35,6 +35,8 @@ class Started:
     instruction: str
     system_prompt: str
     state_hash: str
+    saved: str
+    """What `ActionServer.save` gave before the first view."""
     type: Literal["started"] = "started"
 
 
@@ -80,6 +82,8 @@ class Acted:
     feedback: Feedback
     agent: AgentState
     state_hash: str
+    saved: str
+    """What `ActionServer.save` gave afterwards: a replay can start here."""
     world_s: float
     type: Literal["acted"] = "acted"
 
@@ -136,13 +140,21 @@ def _codec() -> TypeAdapter[Event]:
 class TrajectoryWriter:
     """Writes events and frames into a run folder, each at once."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *, known: int = 0) -> None:
         """Open a run folder.
+
+        Args:
+            folder: Is made if it is missing.
+            known: Go on with an interrupted episode: this many events are in the file already and
+                will come again; they are not written twice.
 
         Raises:
             RecordError: It already holds an episode.
         """
-        if (folder / EVENTS).exists():
+        self._known = known
+        if known:
+            _cut_off_half_line(folder / EVENTS)
+        elif (folder / EVENTS).exists():
             raise RecordError(f"{folder} already holds an episode; choose another --out folder.")
         (folder / FRAMES).mkdir(parents=True, exist_ok=True)
         self._folder = folder
@@ -150,6 +162,9 @@ class TrajectoryWriter:
 
     def notify(self, event: Event, frame: Frame | None = None) -> None:
         """Write an event; its frame first, so that no event names a missing picture."""
+        if self._known:
+            self._known -= 1
+            return
         if frame is not None:
             path = self._folder / FRAMES / frame_name(frame)
             if not path.exists():
@@ -162,6 +177,15 @@ class TrajectoryWriter:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def _cut_off_half_line(path: Path) -> None:
+    """Remove what a kill left of a line that was being written."""
+    content = path.read_bytes()
+    whole = content.rfind(b"\n") + 1
+    if whole < len(content):
+        with path.open("r+b") as file:
+            file.truncate(whole)
 
 
 class Trajectory:

@@ -50,6 +50,10 @@ class ScriptedModel:
         """Scripted or replay."""
         return self._kind
 
+    def skip(self, count: int) -> None:
+        """Leave out the next replies: they were given before an interruption."""
+        self._next += count
+
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
     ) -> Reply:

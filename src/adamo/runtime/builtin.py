@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
 
 from adamo.action import Code, Outcome
 from adamo.engine import BodyReport, ObjectState, SceneInfo, WorldState
+from adamo.errors import EngineError
 from adamo.geometry import Array, Camera, Vec3
 from adamo.observation import BodyState, Percept, SeenObject
 from adamo.runtime import physics
@@ -28,6 +34,27 @@ _REACH_MARGIN_M = 0.02
 _SHOULDERS_M = (1.35, 0.7)
 """Heights from which a line to the target must be free: upright, or crouching."""
 _MAX_SPOT_CHECKS = 60
+_MAX_SNAPSHOT_BYTES = 5_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class _Snapshot:
+    scene: str
+    qpos: tuple[float, ...]
+    body: Body
+    said: tuple[str, ...]
+
+    def pack(self) -> bytes:
+        return zlib.compress(TypeAdapter(_Snapshot).dump_json(self))
+
+    @staticmethod
+    def unpack(data: bytes) -> _Snapshot:
+        try:
+            # A bound on the size: snapshots may come from elsewhere.
+            text = zlib.decompressobj().decompress(data, _MAX_SNAPSHOT_BYTES)
+            return TypeAdapter(_Snapshot).validate_json(text)
+        except (zlib.error, ValidationError) as error:
+            raise EngineError(f"The snapshot is damaged: {error}") from None
 
 
 class BuiltinEngine:
@@ -78,14 +105,7 @@ class BuiltinEngine:
 
         The scene has no random part, so every seed gives the same world.
         """
-        import mujoco
-
-        data = self._world.data
-        mujoco.mj_resetData(self._world.model, data)
-        data.qpos[:] = self._settled
-        mujoco.mj_forward(self._world.model, data)
-        self._body = self._start()
-        self._said = []
+        self._set(self._settled, self._start(), ())
 
     # --- perceive ---------------------------------------------------------------------------
 
@@ -275,6 +295,34 @@ class BuiltinEngine:
             for i, item in self._world.objects.items()
         )
         return WorldState(self._info, objects, self._body.state())
+
+    def snapshot(self) -> bytes:
+        """World, body and what was said, as compressed JSON."""
+        qpos = tuple(float(v) for v in self._world.data.qpos)
+        return _Snapshot(self._info.name, qpos, self._body, tuple(self._said)).pack()
+
+    def restore(self, snapshot: bytes) -> None:
+        """Go back to a snapshot.
+
+        Raises:
+            EngineError: It is damaged or belongs to another scene.
+        """
+        kept = _Snapshot.unpack(snapshot)
+        if kept.scene != self._info.name or len(kept.qpos) != self._world.model.nq:
+            raise EngineError(
+                f"The snapshot is of scene {kept.scene!r}, the engine has {self._info.name!r}."
+            )
+        self._set(np.array(kept.qpos), kept.body, kept.said)
+
+    def _set(self, qpos: Array, body: Body, said: tuple[str, ...]) -> None:
+        import mujoco
+
+        data = self._world.data
+        mujoco.mj_resetData(self._world.model, data)
+        data.qpos[:] = qpos
+        mujoco.mj_forward(self._world.model, data)
+        self._body = body
+        self._said = list(said)
 
     def close(self) -> None:
         """Free graphics memory."""

@@ -17,7 +17,7 @@ _PALM_M = 0.03
 
 def rest(name: str) -> Array:
     """(3,) place of a joint in the rest pose."""
-    return REST[INDEX[name]]
+    return np.asarray(REST[INDEX[name]])
 
 
 def _palm(side: str) -> Array:
@@ -87,7 +87,7 @@ def limit_excess(pose: Pose) -> Array:
     turns = rotation_vectors(pose.rotations)
     excess = np.zeros(len(JOINTS))
     for j, joint in enumerate(JOINTS):
-        name, _, side = joint.partition("_l" if joint.endswith("_l") else "_r")
+        name = joint[:-2] if joint[-2:] in ("_l", "_r") else joint
         if name in ("shin", "forearm"):
             axis = KNEE_AXIS if name == "shin" else ELBOW_AXIS[joint[-1]]
             low, high = KNEE_RANGE if name == "shin" else ELBOW_RANGE

@@ -13,7 +13,7 @@ import numpy as np
 from adamo.geometry import Array
 from adamo.runtime.human.anatomy import turned
 from adamo.runtime.human.ik import LEG_M, STANDING_FEET, Foot, plant_feet
-from adamo.runtime.human.postures import SLACK_M, arms_at_ease
+from adamo.runtime.human.postures import SLACK_M, STANDING_SHIFT, arms_at_ease
 from adamo.runtime.human.rotations import about_x, about_y, about_z, eased
 from adamo.runtime.human.route import TURN_M, Route, Stand
 from adamo.runtime.human.skeleton import REST, Pose
@@ -81,7 +81,7 @@ class Gait:
         """The posture, in the frame of `stand`; head straight, arms swinging."""
         phase = self._phase(time_s)
         if self.steps == 0 or not -_PRELUDE < phase < self.steps:
-            pose = Pose(pelvis_shift=np.array([-0.008, 0.0, -SLACK_M]))
+            pose = Pose(pelvis_shift=STANDING_SHIFT)
             return plant_feet(turned(pose, arms_at_ease()), STANDING_FEET)[0]
         here = self.stand(time_s)
         feet = [_in_body(_foot(track, phase), here) for track in self.landings]
@@ -175,7 +175,7 @@ def _foot(track: tuple[Landing, ...], phase: float) -> Foot:
 
 
 def _strike(landing: Landing) -> float:
-    return float(np.radians(17.0)) * min(1.0, max(0.0, landing.length)) ** 1.5
+    return float(np.radians(17.0) * min(1.0, max(0.0, landing.length)) ** 1.5)
 
 
 def _push(landing: Landing) -> float:
@@ -186,7 +186,7 @@ def _swinging(a: Landing, b: Landing, part: float) -> Foot:
     """A foot in the air, between two landings; `part` from 0 to 1."""
     way = float(0.35 * eased(part) + 0.65 * (part * part * (3 - 2 * part)))
     length = min(1.0, max(0.0, b.length))
-    lift = (0.035 + 0.025 * length) * float(np.sin(np.pi * part ** 0.8)) ** 2
+    lift = (0.035 + 0.025 * length) * float(np.sin(np.pi * part**0.8)) ** 2
     push, strike = _push(b), _strike(b)
     pitch = push * (1.0 - float(eased(part / 0.75))) - strike * float(eased((part - 0.35) / 0.65))
     return Foot(

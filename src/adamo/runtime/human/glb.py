@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import json
 import struct
-from collections.abc import Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from adamo.geometry import Array
 from adamo.runtime.assets.asset import Material
+from adamo.runtime.human.clips import Clip
 from adamo.runtime.human.looks import Figure, Garment
 from adamo.runtime.human.skeleton import JOINTS, PARENTS, REST
 
@@ -26,18 +27,6 @@ _FLOAT, _BYTE, _SHORT, _INT = 5126, 5121, 5123, 5125
 _VERTICES, _INDICES = 34962, 34963
 _BODY_TO_GLTF = (-0.5, -0.5, -0.5, 0.5)
 """Quaternion (x, y, z, w): X forward to +Z, Y left to +X, Z up to +Y."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Clip:
-    """A motion of the whole body."""
-
-    times: Array
-    """(T,) seconds, rising from 0."""
-    rotations: Array
-    """(T, J, 3, 3) rotation of each joint relative to its parent."""
-    pelvis_shift: Array
-    """(T, 3) shift of the pelvis from its rest place, body frame, metres."""
 
 
 @dataclass(slots=True)
@@ -97,26 +86,26 @@ class _Writer:
         )
 
 
-def write_glb(path: Path, figure: Figure, clips: Mapping[str, Clip] | None = None) -> None:
+def write_glb(path: Path, figure: Figure, clips: Iterable[Clip] = ()) -> None:
     """Write a figure with its motions; three.js and others play the clips by name.
 
     Args:
         path: Where to.
         figure: The looks.
-        clips: Motions by name.
+        clips: Motions; they keep their names.
     """
     writer = _Writer()
     writer.json["asset"] = {"version": "2.0", "generator": "ADAMO"}
     writer.json["scene"] = 0
     skin = _add_skeleton(writer)
-    root_children = [1]
+    # Only joints place a skinned mesh, so the specification wants it beside them, not below.
+    roots = [0]
     for garment in figure.garments:
         mesh = _add_mesh(writer, garment)
-        root_children.append(writer.add("nodes", {"name": garment.name, "mesh": mesh, "skin": skin}))
-    writer.json["nodes"][0]["children"] = root_children
-    writer.json["scenes"] = [{"name": figure.variant, "nodes": [0]}]
-    for name, clip in (clips or {}).items():
-        _add_clip(writer, name, clip)
+        roots.append(writer.add("nodes", {"name": garment.name, "mesh": mesh, "skin": skin}))
+    writer.json["scenes"] = [{"name": figure.variant, "nodes": roots}]
+    for clip in clips:
+        _add_clip(writer, clip)
     path.write_bytes(writer.file())
 
 
@@ -127,7 +116,8 @@ def joint_node(joint: int) -> int:
 
 def _add_skeleton(writer: _Writer) -> int:
     """Add the root node, one node for each joint, and the skin."""
-    writer.add("nodes", {"name": "human", "rotation": list(_BODY_TO_GLTF)})
+    root = {"name": "human", "rotation": list(_BODY_TO_GLTF), "children": [joint_node(0)]}
+    writer.add("nodes", root)
     for j, (name, parent) in enumerate(zip(JOINTS, PARENTS, strict=True)):
         shift = REST[j] - (REST[parent] if parent >= 0 else 0.0)
         node: dict[str, Any] = {"name": name, "translation": shift.tolist()}
@@ -191,7 +181,9 @@ def _add_texture(writer: _Writer, picture: NDArray[np.uint8]) -> int:
     from PIL import Image
 
     if "samplers" not in writer.json:
-        writer.add("samplers", {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071})
+        writer.add(
+            "samplers", {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}
+        )
     content = io.BytesIO()
     Image.fromarray(picture).save(content, "PNG", optimize=True)
     view = writer.view(content.getvalue())
@@ -204,11 +196,11 @@ def linear(value: float) -> float:
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
 
 
-def _add_clip(writer: _Writer, name: str, clip: Clip) -> None:
+def _add_clip(writer: _Writer, clip: Clip) -> None:
     """Add an animation: the turn of every joint that moves, and the shift of the pelvis."""
     from scipy.spatial.transform import Rotation
 
-    times = writer.accessor(clip.times, "SCALAR", _FLOAT)
+    times = writer.accessor(clip.times_s, "SCALAR", _FLOAT)
     samplers: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []
 
@@ -218,11 +210,11 @@ def _add_clip(writer: _Writer, name: str, clip: Clip) -> None:
         channels.append({"sampler": len(samplers), "target": target})
         samplers.append({"input": times, "output": output, "interpolation": "LINEAR"})
 
-    add(0, "translation", REST[0] + clip.pelvis_shift, "VEC3")
+    add(0, "translation", clip.pelvis, "VEC3")
     for j in range(len(JOINTS)):
         quaternions = Rotation.from_matrix(clip.rotations[:, j]).as_quat()
         add(j, "rotation", _continuous(quaternions), "VEC4")
-    writer.add("animations", {"name": name, "samplers": samplers, "channels": channels})
+    writer.add("animations", {"name": clip.name, "samplers": samplers, "channels": channels})
 
 
 def _continuous(quaternions: Array) -> Array:

@@ -149,7 +149,7 @@ def _arc(start: Array, goal: Array, height_m: float, along: float) -> Array:
             from above, those in shelves from the front.
         along: 0 at the start, 1 at the goal.
     """
-    aside = 0.5 * (start[1] + goal[1])
+    aside = 0.5 * (start[1] + goal[1]) - 0.06 * float(eased(height_m - 1.0))  # not past the face
     front = max(0.42, 0.45 * float(goal[0]))
     first = np.array([front, aside, np.interp(goal[2], [0.7, 1.0, 1.3, 2.0], _ON_THE_WAY_M)])
     forward = float(np.interp(height_m, [0.3, 0.8, 1.2], [0.9, 0.75, 0.55]))

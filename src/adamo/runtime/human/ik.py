@@ -97,7 +97,8 @@ def _elbow_hint(direction: Array) -> Array:
     level = np.array([-0.25, -0.50, -0.85])
     up = np.array([0.35, -0.85, -0.35])
     height = float(direction[2])
-    return level + (up - level) * max(height, 0.0) + (down - level) * max(-height, 0.0) ** 2
+    bent = level + (up - level) * max(height, 0.0) + (down - level) * max(-height, 0.0) ** 2
+    return np.asarray(bent)
 
 
 def arm_to(pose: Pose, target: Array, hand: str = "r") -> tuple[Pose, float]:

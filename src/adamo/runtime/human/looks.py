@@ -18,7 +18,7 @@ VARIANTS = ("mara", "jonas", "amina", "ken")
 """The people there are; the first is the default."""
 HEAD_GARMENTS = frozenset({"head", "eyes", "lids", "lashes", "brows", "hair"})
 """Garments that a camera between the eyes would see from inside."""
-LIDS_CLOSED_RAD = 0.80
+LIDS_CLOSED_RAD = 0.72
 """Turn of the joint `eyelids` about +Y that closes the eyes; 0 is open."""
 
 

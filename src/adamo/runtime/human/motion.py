@@ -213,7 +213,7 @@ def _handle(
     hand = Handling(local, line_of_gaze(end), takes=kind == "grasp", size=size)
 
     def inside(time_s: float) -> BodyFrame:
-        body = end if time_s >= hand.event_s else facing
+        body = end if time_s >= hand.event_s - 1e-9 else facing
         return BodyFrame(body, hand.pose(time_s))
 
     event = Event(hand.event_s, kind)

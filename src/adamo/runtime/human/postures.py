@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from adamo.geometry import Array, Vec3
-from adamo.runtime.embodiment import EYE_FORWARD_M, EYE_HEIGHT_M, Body
+from adamo.runtime.embodiment import Body
 from adamo.runtime.human.anatomy import ELBOW_AXIS, fingers, lids, turned
 from adamo.runtime.human.ik import STANDING_FEET, arm_to, plant_feet
 from adamo.runtime.human.looks import LIDS_CLOSED_RAD
@@ -21,10 +19,12 @@ from adamo.runtime.human.rotations import (
     looking,
     rotation_vectors,
 )
-from adamo.runtime.human.skeleton import INDEX, REST, Pose, joint_frames
+from adamo.runtime.human.skeleton import INDEX, Pose, joint_frames
 
-SLACK_M = 0.012
+SLACK_M = 0.005
 """How much the pelvis of a standing body is below its rest: nobody stands with locked knees."""
+STANDING_SHIFT = np.array([-0.008, 0.0, -SLACK_M])
+"""Shift of the pelvis of a standing body."""
 CARRY = np.array([0.34, -0.20, 1.05])
 """Grip point of the carrying hand in the body frame, metres: 63 degrees below the horizon of the
 eyes and 37 degrees to the right, so it is seen when looking down and never when looking ahead."""
@@ -74,7 +74,7 @@ def standing(time_s: float = 0.0) -> Pose:
     Args:
         time_s: Time of standing; 0 is between two breaths.
     """
-    pose = Pose(pelvis_shift=np.array([-0.008, 0.0, -SLACK_M]))
+    pose = Pose(pelvis_shift=STANDING_SHIFT)
     pose, _ = plant_feet(turned(pose, arms_at_ease()), STANDING_FEET)
     return breathing(pose, breath(time_s))
 
@@ -145,10 +145,8 @@ def carrying(pose: Pose, size: Vec3 | None = None) -> Pose:
         size: Edge lengths of the thing; its middle is at `CARRY`, and the hand opens to fit it.
             None for a thing that the hand closes around.
     """
-    places, _ = joint_frames(pose)
-    rest_chest = REST[INDEX["chest"]] + np.array([-0.008, 0.0, -SLACK_M])
-    # Most of what the torso does (steps, breath) is kept from what is carried.
-    moved = 0.5 * (places[INDEX["chest"]] - rest_chest)
+    # Half of what the steps do to the pelvis reaches the hand.
+    moved = 0.5 * (pose.pelvis_shift - STANDING_SHIFT)
     held, _ = arm_to(turned(pose, holding(size)), CARRY + moved, "r")
     return held
 
@@ -179,13 +177,3 @@ def at_rest(body: Body, size: Vec3 | None = None, time_s: float = 0.0) -> Pose:
     """
     pose = gazing(standing(time_s), line_of_gaze(body), blink(time_s))
     return pose if body.held is None else carrying(pose, size)
-
-
-def eyes_of_standing() -> Array:
-    """(3,) eyes of the simple body, in its frame: where the gaze starts."""
-    return np.array([EYE_FORWARD_M, 0.0, EYE_HEIGHT_M])
-
-
-def shifted(pose: Pose, by: Array) -> Pose:
-    """The pose with the pelvis moved by (3,) metres; the legs are not adjusted."""
-    return replace(pose, pelvis_shift=pose.pelvis_shift + by)

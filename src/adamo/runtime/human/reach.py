@@ -45,9 +45,7 @@ def open_hand(height_m: float = 1.0) -> dict[str, Array]:
     return {"hand_r": wrist} | fingers("r", np.radians(8.0))
 
 
-def stretched(
-    pose: Pose, stretch: Stretch, weight: float = 1.0, stepped: float = 1.0
-) -> Pose:
+def stretched(pose: Pose, stretch: Stretch, weight: float = 1.0, stepped: float = 1.0) -> Pose:
     """Trunk, hips and legs bent by a share of a stretch; the idle arm hangs by its weight.
 
     Args:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ TURN_M = 0.62
 _SAMPLE_M = 0.01
 _ROUNDING_M = 0.13
 """Half of the length over which a corner is rounded."""
-_TURNING_M = 0.32
+_TURNING_M = 0.55
 """Half of the length over which the heading changes at a corner."""
 
 
@@ -65,7 +66,7 @@ def route(heading_rad: float, points: Sequence[Vec3], end_heading_rad: float) ->
         end_heading_rad: Heading at the end.
     """
     knots = [(points[0].x, points[0].y, heading_rad)]
-    for a, b in zip(points, points[1:], strict=False):
+    for a, b in pairwise(points):
         if a.horizontal_distance(b) < 1e-9:
             continue
         ahead = _turned(knots[-1][2], float(np.arctan2(b.y - a.y, b.x - a.x)))

@@ -42,9 +42,7 @@ def add_human(spec: mujoco.MjSpec, figure: Figure) -> None:
         _add_skin(spec, garment)
 
 
-def pose_human(
-    model: mujoco.MjModel, data: mujoco.MjData, places: Array, rotations: Array
-) -> None:
+def pose_human(model: mujoco.MjModel, data: mujoco.MjData, places: Array, rotations: Array) -> None:
     """Put the joints where they are in the world; the next drawing shows it.
 
     Args:

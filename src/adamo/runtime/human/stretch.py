@@ -17,7 +17,7 @@ import numpy as np
 from adamo.geometry import Array
 from adamo.runtime.human.anatomy import rest
 from adamo.runtime.human.ik import ANKLE_M, ARM_M, LEG_M, STANDING_FEET, Foot
-from adamo.runtime.human.postures import SLACK_M
+from adamo.runtime.human.postures import STANDING_SHIFT
 from adamo.runtime.human.rotations import about_x, about_y, about_z, eased
 from adamo.runtime.human.skeleton import INDEX, Pose
 
@@ -153,7 +153,7 @@ def _hinge(value: Array, limit: float, weight: float) -> Array:
 def _costs(bends: Array, target: Array, stepping: int) -> Array:
     """Residuals of a batch of bends: (N, B) to (N, R)."""
     trunk = _Trunk.of(bends)
-    pelvis = rest("pelvis") + np.array([-0.008, 0.0, -SLACK_M]) + bends[:, : Bend.YAW]
+    pelvis = rest("pelvis") + STANDING_SHIFT + bends[:, : Bend.YAW]
     spine = pelvis + trunk.pelvis @ _bone("pelvis", "spine")
     spine_turn = trunk.pelvis @ trunk.part
     chest = spine + spine_turn @ _bone("spine", "chest")
@@ -191,9 +191,7 @@ def _costs(bends: Array, target: Array, stepping: int) -> Array:
     return np.concatenate(costs, axis=1)
 
 
-def _leg_costs(
-    hip: Array, foot: Array, heel: Array, pitch: Array
-) -> tuple[Array, Array, Array]:
+def _leg_costs(hip: Array, foot: Array, heel: Array, pitch: Array) -> tuple[Array, Array, Array]:
     """What a leg minds, seen from the side, and where its knee and ankle are."""
     to_ball = np.array([0.13, 0.0, 0.02 - ANKLE_M])
     ankle = foot + to_ball - about_y(heel) @ to_ball

@@ -62,7 +62,7 @@ def _bones() -> dict[str, list[tuple[Array, Array]]]:
 def _segment_distance(p: Array, a: Array, b: Array) -> Array:
     axis = b - a
     t = np.clip((p - a) @ axis / (axis @ axis), 0.0, 1.0)
-    return np.linalg.norm(p - a - t[:, None] * axis, axis=1)
+    return np.asarray(np.linalg.norm(p - a - t[:, None] * axis, axis=1))
 
 
 def _spread(p: Array) -> Array:
@@ -73,7 +73,7 @@ def _spread(p: Array) -> Array:
     return np.asarray((share * widths).sum(axis=1) / share.sum(axis=1))
 
 
-def bind(points: Array, allowed: Sequence[str] | None = None) -> tuple[Array, Array]:
+def bind(points: Array, allowed: Sequence[str] | None = None) -> tuple[NDArray[np.uint8], Array]:
     """Give each place its four strongest joints.
 
     Args:
@@ -100,7 +100,7 @@ def bind(points: Array, allowed: Sequence[str] | None = None) -> tuple[Array, Ar
     return strongest(weights)
 
 
-def strongest(weights: Array) -> tuple[Array, Array]:
+def strongest(weights: Array) -> tuple[NDArray[np.uint8], Array]:
     """Keep the four largest of (N, J) weights and make them sum to 1."""
     ids = np.argsort(-weights, axis=1, kind="stable")[:, :4]
     kept = np.take_along_axis(weights, ids, axis=1)

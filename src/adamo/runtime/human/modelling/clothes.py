@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from adamo.geometry import Array
@@ -19,7 +17,6 @@ from adamo.runtime.human.modelling.shapes import (
     half_space,
     loft,
     minus,
-    right_of,
     round_cone,
     slab,
     union,
@@ -46,13 +43,15 @@ def torso(v: Variant) -> Shape:
     """The top without its sleeves, hem at 0.90 m."""
     g = v.girth
     man = [
-        (0.80, -0.004, 0.104, 0.140), (0.885, -0.002, 0.124, 0.180), (0.93, -0.003, 0.121, 0.173), (1.00, 0.000, 0.112, 0.158),
+        (0.80, -0.004, 0.104, 0.140),
+        (0.885, -0.002, 0.124, 0.180), (0.93, -0.003, 0.121, 0.173), (1.00, 0.000, 0.112, 0.158),
         (1.08, 0.002, 0.108, 0.152), (1.16, 0.002, 0.112, 0.156), (1.24, 0.000, 0.119, 0.166),
         (1.31, -0.004, 0.118, 0.170), (1.37, -0.012, 0.096, 0.148), (1.42, -0.018, 0.072, 0.085),
         (1.46, -0.012, 0.055, 0.060),
     ]  # fmt: skip
     woman = [
-        (0.80, -0.006, 0.104, 0.148), (0.885, -0.004, 0.124, 0.186), (0.93, -0.005, 0.119, 0.176), (1.00, -0.002, 0.104, 0.150),
+        (0.80, -0.006, 0.104, 0.148),
+        (0.885, -0.004, 0.124, 0.186), (0.93, -0.005, 0.119, 0.176), (1.00, -0.002, 0.104, 0.150),
         (1.08, 0.002, 0.094, 0.130), (1.16, 0.003, 0.096, 0.131), (1.24, 0.000, 0.102, 0.143),
         (1.31, -0.006, 0.098, 0.146), (1.37, -0.012, 0.086, 0.128), (1.42, -0.018, 0.066, 0.076),
         (1.46, -0.012, 0.048, 0.052),
@@ -62,15 +61,14 @@ def torso(v: Variant) -> Shape:
         x, depth, width = (mix(v, p, q) for p, q in zip(a, b, strict=True))
         rows.append((z, x, depth * g, width * g))
     body = loft(rows, rounding=0.012)
-    bust = ellipsoid((0.070, 0.066, 1.262), (0.046, 0.056, 0.054))
-    chest = ellipsoid((0.070, 0.070, 1.290), (0.046, 0.075, 0.055))
-    front = union(0.05, body, both(0.03, bust if v.feminine > 0.5 else chest))
+    bust = ellipsoid((0.069, 0.064, 1.264), (0.042, 0.055, 0.054))
+    chest = ellipsoid((0.066, 0.062, 1.295), (0.040, 0.080, 0.060))
+    front = union(0.05, body, both(0.045, bust) if v.feminine > 0.5 else both(0.06, chest))
     return union(0.04, front, grown(_seat(), 0.006))
 
 
 def _seat() -> Shape:
     return both(0.03, ellipsoid((-0.056, 0.070, 0.900), (0.072, 0.078, 0.088)))
-
 
 
 def sleeve(v: Variant) -> Shape:
@@ -86,13 +84,15 @@ def sleeve(v: Variant) -> Shape:
         0.02,
     )
     collar = chain(
-        ((-0.014, 0.03, 1.412), (-0.012, 0.10, 1.394), high), (0.044 * r, 0.043 * r, 0.053 * r), 0.03
+        ((-0.014, 0.03, 1.412), (-0.012, 0.10, 1.394), high),
+        (0.044 * r, 0.043 * r, 0.053 * r),
+        0.03,
     )
     start, end = _between(ELBOW, WRIST, 0.84), _between(ELBOW, WRIST, 0.97)
-    cuff = round_cone(start, end, 0.043 * r, 0.039 * r)
+    cuff = round_cone(start, end, 0.0445 * r, 0.0415 * r)
     axis = np.subtract(WRIST, ELBOW)
     outward = (float(axis[0]), float(axis[1]), float(axis[2]))
-    hollow = round_cone(_between(ELBOW, WRIST, 0.92), WRIST, 0.033 * r, 0.034 * r)
+    hollow = round_cone(_between(ELBOW, WRIST, 0.92), WRIST, 0.031 * r, 0.032 * r)
     cut = half_space(_between(ELBOW, WRIST, 0.965), outward)
     whole = union(0.006, union(0.03, arm, collar), cuff)
     return minus(0.003, common(0.004, displaced(whole, _arm_folds), cut), hollow)
@@ -105,9 +105,9 @@ def _arm_folds(p: Array) -> Array:
     phase = 2 * np.pi * along / 0.036 + 2.6 * np.sin(40 * p[:, 0] + 9 * along)
     where = np.exp(-(((along - 0.285) / 0.06) ** 2)) + 0.8 * np.exp(-(((along - 0.45) / 0.05) ** 2))
     where *= along < 0.49
-    return 0.0019 * where * np.sin(phase) + 0.0018 * np.exp(-(((along - 0.07) / 0.05) ** 2)) * np.sin(
-        2 * np.pi * along / 0.045 + 30 * p[:, 0]
-    )
+    high = np.exp(-(((along - 0.07) / 0.05) ** 2))
+    slow = np.sin(2 * np.pi * along / 0.045 + 30 * p[:, 0])
+    return np.asarray(0.0019 * where * np.sin(phase) + 0.0011 * high * slow)
 
 
 def _torso_folds(p: Array) -> Array:
@@ -118,7 +118,8 @@ def _torso_folds(p: Array) -> Array:
     across = np.sin(2 * np.pi * (z + 0.25 * side) / 0.042 + 1.6 * np.sin(17 * y + 11 * x))
     arm = np.exp(-(((z - 1.24) / 0.06) ** 2)) * np.clip((side - 0.06) / 0.06, 0.0, 1.0)
     slanted = np.sin(2 * np.pi * (z - 0.9 * side) / 0.05 + 9 * x)
-    return 0.0026 * low * across * np.clip(side / 0.05 + 0.35, 0, 1) + 0.0024 * arm * slanted
+    low = low * np.clip(side / 0.05 + 0.35, 0, 1)
+    return np.asarray(0.0026 * low * across + 0.0024 * arm * slanted)
 
 
 def top(v: Variant) -> Shape:
@@ -165,7 +166,7 @@ def _ring(center: Point, depth: float, width: float, thick: float, tilt: float) 
         x, y, z = np.moveaxis(p - np.array(center), 1, 0)
         k = np.hypot(x / depth, y / width)
         radial = (k - 1.0) * (depth + width) / 2
-        return np.hypot(radial, (z + tilt * x - 0.15 * np.abs(y)) * 0.85) - thick
+        return np.asarray(np.hypot(radial, (z + tilt * x - 0.15 * np.abs(y)) * 0.85) - thick)
 
     return distance
 
@@ -181,7 +182,7 @@ def _shirt_collar(r: float) -> Shape:
         radial = (k - 1.0) * 0.064 * r - flare
         parted = 0.010 - np.abs(y) + np.clip(0.018 - height, 0, 0.1) * -0.42
         leaf = np.maximum(np.abs(radial) - 0.0042, np.maximum(height - 0.022, -0.026 - height))
-        return np.maximum(leaf, np.where(x > 0, parted + 0.0, -1.0))
+        return np.asarray(np.maximum(leaf, np.where(x > 0, parted, -1.0)))
 
     return distance
 
@@ -193,12 +194,12 @@ def trousers(v: Variant) -> Shape:
     leg = chain(
         (
             (0.000, 0.086, 0.89), (0.012, 0.092, 0.72), (0.014, 0.096, 0.50),
-            (-0.004, 0.099, 0.36), (-0.014, 0.102, 0.05),
+            (-0.006, 0.099, 0.36), (-0.019, 0.102, 0.05),
         ),
-        (0.090 * r, 0.082 * r, 0.064 * r, 0.062 * r, 0.056 * r),
+        (0.090 * r, 0.082 * r, 0.064 * r, 0.062 * r, 0.059 * r),
         0.02,
     )  # fmt: skip
-    hollow = round_cone((-0.014, 0.102, 0.10), (-0.014, 0.102, 0.03), 0.047 * r, 0.051 * r)
+    hollow = round_cone((-0.018, 0.102, 0.10), (-0.019, 0.102, 0.03), 0.047 * r, 0.052 * r)
     cut = slab(0.062, 2.0)
     left = minus(0.003, common(0.004, displaced(leg, _leg_folds), cut), hollow)
     crotch = ellipsoid((-0.006, 0.0, 0.845), (0.075, 0.035, 0.050))
@@ -215,15 +216,15 @@ def _leg_folds(p: Array) -> Array:
     phase = 2 * np.pi * z / 0.05 + 1.7 * np.sin(2 * around + 20 * z)
     where = 0.9 * np.exp(-(((z - 0.47) / 0.06) ** 2)) + np.exp(-(((z - 0.10) / 0.055) ** 2))
     where += 0.7 * np.exp(-(((z - 0.80) / 0.05) ** 2))
-    return 0.0026 * where * np.sin(phase)
+    return np.asarray(0.0026 * where * np.sin(phase))
 
 
 def shoe_upper() -> Shape:
     """The left shoe above its sole."""
     front = ellipsoid((0.098, 0.107, 0.028), (0.094, 0.047, 0.043))
-    heel = ellipsoid((-0.034, 0.099, 0.045), (0.046, 0.036, 0.056))
-    instep = round_cone((-0.012, 0.100, 0.074), (0.085, 0.105, 0.038), 0.040, 0.030)
-    ankle = round_cone((-0.022, 0.100, 0.06), (-0.022, 0.101, 0.096), 0.040, 0.041)
+    heel = ellipsoid((-0.032, 0.099, 0.040), (0.045, 0.035, 0.048))
+    instep = round_cone((-0.012, 0.100, 0.074), (0.085, 0.105, 0.038), 0.037, 0.030)
+    ankle = round_cone((-0.022, 0.100, 0.06), (-0.020, 0.101, 0.096), 0.037, 0.035)
     whole = union(0.035, front, heel, instep, ankle)
     return common(0.004, whole, slab(0.012, 0.115))
 
@@ -233,20 +234,24 @@ def shoe_sole() -> Shape:
     front = ellipsoid((0.098, 0.107, 0.012), (0.102, 0.053, 0.30))
     heel = ellipsoid((-0.030, 0.099, 0.012), (0.060, 0.042, 0.30))
     middle = ellipsoid((0.03, 0.102, 0.012), (0.09, 0.039, 0.30))
-    lifted: Callable[[Array], Array] = lambda p: p[:, 2] - 0.024 - 0.4 * np.clip(p[:, 0] - 0.14, 0, 1)
+
+    def lifted(p: Array) -> Array:
+        return np.asarray(p[:, 2] - 0.023 - 0.2 * np.clip(p[:, 0] - 0.14, 0, 1))
+
     return common(0.008, union(0.03, front, heel, middle), slab(0.0, 0.2), lifted)
 
 
 def laces() -> Shape:
-    """Three bars across the left instep."""
+    """Four bars across the left instep."""
+    upper = shoe_upper()
+    heights = np.linspace(0.03, 0.13, 201)
+
+    def on_shoe(x: float, y: float) -> Point:
+        column = np.column_stack([np.full(201, x), np.full(201, y), heights])
+        return x, y, float(heights[upper(column) < 0].max()) + 0.0012
+
     bars = []
-    for i in range(4):
-        x, z = 0.034 + 0.018 * i, 0.0985 - 0.0090 * i
-        bars.append(chain(((x, 0.084, z - 0.006), (x + 0.002, 0.104, z), (x, 0.124, z - 0.006)),
-                          (0.0036, 0.004, 0.0036)))  # fmt: skip
-    return union(0.002, *bars)
-
-
-def right(shape: Shape) -> Shape:
-    """The right one of a pair."""
-    return right_of(shape)
+    for x in (0.034, 0.050, 0.066, 0.082):
+        points = [on_shoe(x + 0.001 * k, 0.104 + 0.006 * k) for k in (-3, -2, -1, 0, 1, 2, 3)]
+        bars.append(chain(points, [0.0022, *[0.0030] * 5, 0.0022]))
+    return union(0.0, *bars)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from adamo.geometry import Array
 from adamo.runtime.human.modelling.clothes import mix
@@ -45,7 +46,11 @@ def head(v: Variant) -> Shape:
     face = ellipsoid((0.026, 0.0, 1.568), (0.060, mix(v, 0.0615, 0.0590), 0.086))
     jaw = mirrored(
         chain(
-            ((0.000, mix(v, 0.048, 0.046), 1.556), (0.022, mix(v, 0.0425, 0.0375), 1.521), (0.066, 0.012, 1.492)),
+            (
+                (0.000, mix(v, 0.048, 0.046), 1.556),
+                (0.022, mix(v, 0.0425, 0.0375), 1.521),
+                (0.066, 0.012, 1.492),
+            ),
             (0.020, mix(v, 0.0150, 0.0135), mix(v, 0.0165, 0.014)),
             0.015,
         )
@@ -71,7 +76,9 @@ def head(v: Variant) -> Shape:
     whole = union(0.004, whole, mirrored(_ear()))
     whole = _with_eyes(v, whole)
     nape = round_cone((-0.026, 0.0, 1.40), (-0.030, 0.0, 1.53), 0.032, 0.036)
-    throat = round_cone((-0.010, 0.0, 1.36), (0.000, 0.0, 1.53), mix(v, 0.054, 0.045), mix(v, 0.050, 0.042))
+    throat = round_cone(
+        (-0.010, 0.0, 1.36), (0.000, 0.0, 1.53), mix(v, 0.054, 0.045), mix(v, 0.050, 0.042)
+    )
     apple = ellipsoid((0.040, 0.0, 1.462), (0.012, 0.010, 0.014))
     neck = union(0.03, throat, nape)
     if f < 0.5:
@@ -88,7 +95,9 @@ def nose(v: Variant) -> Shape:
         (0.0085 * n, 0.0075 * n, 0.0085 * n),
         0.01,
     )
-    tip = ellipsoid((0.1020 + 0.002 * (1 - v.feminine), 0.0, 1.5635), (0.0112 * n, 0.0105 * n, 0.0095 * n))
+    tip = ellipsoid(
+        (0.1020 + 0.002 * (1 - v.feminine), 0.0, 1.5635), (0.0112 * n, 0.0105 * n, 0.0095 * n)
+    )
     wings = mirrored(ellipsoid((0.0925, 0.0112 * n, 1.5600), (0.0095, 0.0066 * n, 0.0066)))
     holes = mirrored(ellipsoid((0.0985, 0.0062 * n, 1.5535), (0.0050, 0.0032, 0.0035)))
     return minus(0.003, union(0.008, bridge, tip, wings), holes)
@@ -100,21 +109,34 @@ def mouth(v: Variant) -> Shape:
     z = MOUTH_Z
     upper = mirrored(
         chain(
-            ((0.0935, 0.000, z + 0.0040), (0.0930, 0.007, z + 0.0044), (0.0800, 0.0240, z + 0.0045)),
+            (
+                (0.0935, 0.000, z + 0.0040),
+                (0.0930, 0.007, z + 0.0044),
+                (0.0800, 0.0240, z + 0.0045),
+            ),
             (0.0046 * full, 0.0048 * full, 0.0022),
             0.004,
         )
     )
     lower = mirrored(
         chain(
-            ((0.0925, 0.000, z - 0.0052), (0.0905, 0.009, z - 0.0046), (0.0805, 0.0230, z + 0.0030)),
+            (
+                (0.0925, 0.000, z - 0.0052),
+                (0.0905, 0.009, z - 0.0046),
+                (0.0805, 0.0230, z + 0.0030),
+            ),
             (0.0058 * full, 0.0054 * full, 0.0022),
             0.004,
         )
     )
     line = mirrored(
         chain(
-            ((0.1010, 0.000, z - 0.0002), (0.0985, 0.009, z - 0.0002), (0.0920, 0.018, z + 0.0014), (0.0840, 0.0262, z + 0.0052)),
+            (
+                (0.1010, 0.000, z - 0.0002),
+                (0.0985, 0.009, z - 0.0002),
+                (0.0920, 0.018, z + 0.0014),
+                (0.0840, 0.0262, z + 0.0052),
+            ),
             (0.0016, 0.0016, 0.0014, 0.0012),
         )
     )
@@ -171,7 +193,7 @@ def lid_edge(v: Variant, count: int, height: float, out: float, reach: float = 1
     y = s * np.cos(tilt) - t * np.sin(tilt)
     z = s * np.sin(tilt) + t * np.cos(tilt) - 0.0015
     x = np.sqrt(np.maximum((EYE_RADIUS + out) ** 2 - y**2 - z**2, 1e-6))
-    return EYE + np.stack([x, y, z], axis=1)
+    return np.asarray(EYE + np.stack([x, y, z], axis=1))
 
 
 def _both_sides(left: Mesh) -> Mesh:
@@ -188,7 +210,7 @@ def lashes(v: Variant) -> Mesh:
 
 def lids(rows: int = 6, columns: int = 11) -> Mesh:
     """The movable upper lids, tucked away when open; they turn about the joint `eyelids`."""
-    elevation = np.radians(np.linspace(24.0, 100.0, rows))
+    elevation = np.radians(np.linspace(19.0, 100.0, rows))
     side = np.radians(np.linspace(-82.0, 82.0, columns))
     e, s = np.meshgrid(elevation, side, indexing="ij")
     radius = EYE_RADIUS + 0.0011
@@ -217,7 +239,7 @@ def eyeballs(rings: int = 8, columns: int = 16) -> tuple[Mesh, Array]:
     return mesh, np.concatenate([0.5 + disc / 2 - shift, 0.5 + disc / 2 * [-1, 1] + shift])
 
 
-def _grid(rows: int, columns: int) -> Array:
+def _grid(rows: int, columns: int) -> NDArray[np.int64]:
     """(M, 3) triangles of a grid of points."""
     i = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]

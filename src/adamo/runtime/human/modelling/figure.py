@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from adamo.geometry import Array
 from adamo.runtime.assets.asset import Material
@@ -25,6 +26,15 @@ from adamo.runtime.human.modelling.meshing import (
 )
 from adamo.runtime.human.modelling.shapes import Shape, both, grown, mirrored, union
 from adamo.runtime.human.modelling.variant import Variant
+
+_TOP = ("pelvis", "spine", "chest", "neck", "clavicle", "upper_arm", "forearm", "thigh")
+_HELD_BY = {
+    "top": _TOP,
+    "collar": _TOP,
+    "trousers": ("pelvis", "spine", "thigh", "shin"),
+    "shoes": ("foot", "toes"),
+}
+"""Joints that each piece of clothing may follow."""
 
 
 def build_figure(variant: Variant) -> Figure:
@@ -77,21 +87,32 @@ class _Sculptor:
         mesh, uvs = _unrolled(mesh)
         around = union(0.0, self.head, self.hair, self.top, clothes.collar(self.v))
         skin = paint.head_picture(self.v, self.head, around)
-        head = _garment("head", mesh, uvs, bind(mesh.vertices, ("neck", "head", "chest")), skin, 0.16, 0.25)
+        head = _garment(
+            "head", mesh, uvs, bind(mesh.vertices, ("neck", "head", "chest")), skin, 0.16, 0.25
+        )
         eyes, eye_uvs = face.eyeballs()
         lids = face.lids()
-        lid_colour = paint.palette([_darker(self.v.skin, 0.86)])
+        lid_colour = paint.palette([_darker(self.v.skin, 0.80)])
         return (
             head,
-            _garment("eyes", eyes, eye_uvs, rigid(len(eyes.vertices), "head"), paint.eye_picture(self.v), 0.6, 0.9),
+            _garment(
+                "eyes",
+                eyes,
+                eye_uvs,
+                rigid(len(eyes.vertices), "head"),
+                paint.eye_picture(self.v),
+                0.6,
+                0.9,
+            ),
             _plain("lids", lids, rigid(len(lids.vertices), "eyelids"), lid_colour, 0.9),
             self._brows(),
             self._lashes(),
         )
 
     def _brows(self) -> Garment:
-        shape = mirrored(self._laid_brow())
-        mesh = polygonize(shape, (0.03, -0.065, 1.605), (0.105, 0.065, 1.650), 0.0011, 320, 2)
+        low, high = (0.03, 0.004, 1.605), (0.105, 0.065, 1.650)
+        left = largest(polygonize(self._laid_brow(), low, high, 0.0011, 160, 2))
+        mesh = merged(left, Mesh(left.vertices * [1, -1, 1], left.faces[:, ::-1]))
         picture = paint.palette([_darker(self.v.hair, 0.85)])
         return _plain("brows", mesh, rigid(len(mesh.vertices), "head"), picture, 0.8)
 
@@ -125,15 +146,16 @@ class _Sculptor:
 
     def _hands(self) -> Garment:
         low, high = (-0.03, 0.46, 0.78), (0.12, 0.68, 1.06)
-        left = polygonize(hand(self.v), low, high, 0.0018, 1400, 3)
+        left = polygonize(hand(self.v), low, high, 0.0018, 1720, 3)
         sleeve = clothes.sleeve(self.v)
         left = without_hidden(left, sleeve, 0.004)
-        left = Mesh(left.vertices, left.faces)
         mesh = merged(left, Mesh(left.vertices * [1, -1, 1], left.faces[:, ::-1]))
         light = daylight(mesh.vertices, mesh.normals(), union(0.0, self.hands, mirrored(sleeve)))
         uvs = np.column_stack([np.full(len(light), 0.5), _rows(light)])
         bound = bind(mesh.vertices, ("forearm", "hand", "fingers"))
-        return _garment("hands", mesh, uvs, bound, paint.palette([self.v.skin], 0.7, 0.55), 0.12, 0.2)
+        return _garment(
+            "hands", mesh, uvs, bound, paint.palette([self.v.skin], 0.7, 0.55), 0.12, 0.2
+        )
 
     def _top(self) -> Garment:
         mesh = polygonize(self.top, (-0.17, -0.60, 0.86), (0.17, 0.60, 1.50), 0.0055, 4500, 2)
@@ -155,9 +177,13 @@ class _Sculptor:
         return self._cloth("trousers", mesh, [self.v.trousers], None)
 
     def _shoes(self) -> Garment:
-        upper = polygonize(clothes.shoe_upper(), (-0.1, 0.03, -0.01), (0.22, 0.18, 0.13), 0.004, 640, 3)
-        sole = polygonize(clothes.shoe_sole(), (-0.11, 0.03, -0.02), (0.23, 0.18, 0.06), 0.004, 300, 1)
-        bars = polygonize(clothes.laces(), (0.0, 0.07, 0.05), (0.11, 0.14, 0.10), 0.002, 200, 2)
+        upper = polygonize(
+            clothes.shoe_upper(), (-0.1, 0.03, -0.01), (0.22, 0.18, 0.13), 0.004, 600, 3
+        )
+        sole = polygonize(
+            clothes.shoe_sole(), (-0.11, 0.03, -0.02), (0.23, 0.18, 0.06), 0.004, 300, 1
+        )
+        bars = polygonize(clothes.laces(), (0.0, 0.07, 0.05), (0.11, 0.14, 0.11), 0.0015, 280, 1)
         upper = without_hidden(upper, both(0.0, clothes.shoe_sole()), 0.006)
         left = merged(upper, sole, bars)
         part = np.repeat([1 / 6, 3 / 6, 5 / 6], [len(m.vertices) for m in (upper, sole, bars)])
@@ -175,16 +201,9 @@ class _Sculptor:
         """Shade a garment by what surrounds it; `across` (N,) chooses the colour."""
         light = daylight(mesh.vertices, mesh.normals(), self.everything)
         u = np.full(len(light), 0.5) if across is None else across
-        kinds = None
-        if name == "trousers":
-            kinds = ("pelvis", "spine", "thigh", "shin")
-        elif name in ("top", "collar"):
-            kinds = ("pelvis", "spine", "chest", "neck", "clavicle", "upper_arm", "forearm", "thigh")
-        elif name == "shoes":
-            kinds = ("foot", "toes")
         picture = paint.palette(list(colours))
         uvs = np.column_stack([u, _rows(light)])
-        return _garment(name, mesh, uvs, bind(mesh.vertices, kinds), picture, 0.06, 0.1)
+        return _garment(name, mesh, uvs, bind(mesh.vertices, _HELD_BY[name]), picture, 0.06, 0.1)
 
 
 def _trim_of_top(p: Array) -> Array:
@@ -225,16 +244,25 @@ def _unrolled(mesh: Mesh) -> tuple[Mesh, Array]:
 
 
 def _plain(
-    name: str, mesh: Mesh, bound: tuple[Array, Array], picture: paint.Picture, light: float
+    name: str,
+    mesh: Mesh,
+    bound: tuple[NDArray[np.uint8], Array],
+    picture: paint.Picture,
+    light: float,
 ) -> Garment:
     uvs = np.column_stack([np.full(len(mesh.vertices), 0.5), np.full(len(mesh.vertices), light)])
     return _garment(name, mesh, uvs, bound, picture, 0.05, 0.1)
 
 
 def _garment(
-    name: str, mesh: Mesh, uvs: Array, bound: tuple[Array, Array], picture: paint.Picture,
-    specular: float, shininess: float,
-) -> Garment:  # fmt: skip
+    name: str,
+    mesh: Mesh,
+    uvs: Array,
+    bound: tuple[NDArray[np.uint8], Array],
+    picture: paint.Picture,
+    specular: float,
+    shininess: float,
+) -> Garment:
     ids, weights = bound
     return Garment(
         name,

@@ -51,7 +51,7 @@ def hand(v: Variant) -> Shape:
                 [np.cos(angle) * np.cos(sideways), np.cos(angle) * np.sin(sideways), np.sin(angle)]
             )
             points.append((float(place[0]), float(place[1]), float(place[2])))
-        radii = [r * size for r in (0.0100, 0.0092, 0.0084, 0.0070)]
+        radii = [r * size for r in (0.0100, 0.0092, 0.0083, 0.0066)]
         fingers.append(chain([at(*p) for p in points], radii, 0.003))
     palm = union(0.014, *bones)
     heel = round_cone(at(0.018, 0.020, 0.006), at(0.052, 0.034, 0.010), 0.0165 * s, 0.0125 * s)
@@ -62,7 +62,10 @@ def hand(v: Variant) -> Shape:
     )
     wrist = union(
         0.02,
-        *(round_cone(at(-0.05, b, 0), at(0.01, b, 0), 0.0225 * s, 0.0195 * s) for b in (-0.009, 0.009)),
+        *(
+            round_cone(at(-0.05, b, 0), at(0.01, b, 0), 0.0225 * s, 0.0195 * s)
+            for b in (-0.009, 0.009)
+        ),
     )
     whole = union(0.016, palm, heel, wrist)
     return union(0.007, whole, union(0.0015, *fingers), thumb)

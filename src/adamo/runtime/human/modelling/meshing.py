@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +58,9 @@ def polygonize(
         smoothing: Passes of shrink-free (Taubin) smoothing before the decimation.
     """
     import fast_simplification
-    from skimage.measure import marching_cubes
+    from skimage import measure
+
+    marching_cubes: Any = measure.marching_cubes
 
     field = _sampled(shape, np.array(low), np.array(high), cell_m)
     vertices, faces, _, _ = marching_cubes(field, 0.0, spacing=(cell_m,) * 3)
@@ -88,9 +91,7 @@ def _sampled(shape: Shape, low: Array, high: Array, cell_m: float) -> Array:
         np.meshgrid(*(np.arange(n) for n in blocks), indexing="ij"), axis=-1
     ).reshape(-1, 3)
     coarse = shape(low + (centers + 0.5) * edge_m)
-    field = np.repeat(
-        np.repeat(np.repeat(coarse.reshape(blocks), _BLOCK, 0), _BLOCK, 1), _BLOCK, 2
-    )
+    field = np.repeat(np.repeat(np.repeat(coarse.reshape(blocks), _BLOCK, 0), _BLOCK, 1), _BLOCK, 2)
     inner = np.stack(np.meshgrid(*(np.arange(_BLOCK),) * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     for block in centers[np.abs(coarse) < edge_m * 1.6]:
         at = block * _BLOCK

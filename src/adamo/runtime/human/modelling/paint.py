@@ -1,4 +1,4 @@
-"""Pictures for the figure: the painted head, the eye, and palettes whose rows are light and shade."""
+"""Pictures for the figure: the painted head, the eye, palettes whose rows are light and shade."""
 
 from __future__ import annotations
 
@@ -58,7 +58,9 @@ def _head_places(surface: Shape, around: Shape) -> tuple[Array, Array]:
         zoom(points[:, i].reshape(shape), scale, order=1, mode="nearest", grid_mode=True)
         for i in range(3)
     ]
-    light = zoom(gaussian_filter(light.reshape(shape), 0.7), scale, order=1, mode="nearest", grid_mode=True)
+    light = zoom(
+        gaussian_filter(light.reshape(shape), 0.7), scale, order=1, mode="nearest", grid_mode=True
+    )
     return np.stack(fine, axis=-1), light
 
 
@@ -98,7 +100,11 @@ def head_picture(v: Variant, surface: Shape, around: Shape) -> Picture:
     tint(rosy, v.blush * 0.9 * _spot(p, (0.072, 0.042, 1.562), 0.021))
     tint(rosy, v.blush * 0.7 * _spot(p, (0.104, 0.0, 1.563), 0.012))
     tint(rosy, v.blush * 0.8 * _spot(p, (-0.010, 0.086, 1.594), 0.030))
-    tint(skin * 0.72, 0.42 * _spot(p, (0.080, 0.034, 1.6165), 0.0125) + 0.25 * _spot(p, (0.083, 0.034, 1.590), 0.012))
+    tint(
+        skin * 0.72,
+        0.42 * _spot(p, (0.080, 0.034, 1.6165), 0.0125)
+        + 0.25 * _spot(p, (0.083, 0.034, 1.590), 0.012),
+    )
     if v.feminine > 0.5:
         tint(lips * 0.75, 0.35 * _spot(p, (0.080, 0.036, 1.616), 0.010))
     if v.stubble:
@@ -121,7 +127,9 @@ def _beard(p: Array) -> Array:
     x, y, z = p[..., 0], np.abs(p[..., 1]), p[..., 2]
     edge = 1.530 + 0.055 * np.clip((y - 0.028) / 0.045, 0, 1) ** 1.3
     cheek = np.clip((edge - z) / 0.010, 0, 1) * (x > -0.004)
-    moustache = np.exp(-(((z - 1.5445) / 0.0055) ** 2)) * np.clip((0.034 - y) / 0.008, 0, 1) * (x > 0.05)
+    moustache = (
+        np.exp(-(((z - 1.5445) / 0.0055) ** 2)) * np.clip((0.034 - y) / 0.008, 0, 1) * (x > 0.05)
+    )
     throat = np.clip((z - 1.470) / 0.018, 0, 1)
     front = np.clip((x + 0.002) / 0.012, 0, 1)
     return np.maximum(cheek * throat * front, 0.9 * moustache)
@@ -136,13 +144,17 @@ def eye_picture(v: Variant) -> Picture:
     angle = np.arctan2(y, x)
     colour = np.empty((n, n, 3))
     colour[:] = np.array([0.90, 0.88, 0.85])
-    colour *= (1 - 0.30 * np.clip(r - 0.3, 0, 1) - 0.32 * np.clip((y - 0.12) / 0.5, 0, 1))[..., None]
+    colour *= (1 - 0.30 * np.clip(r - 0.3, 0, 1) - 0.32 * np.clip((y - 0.12) / 0.5, 0, 1))[
+        ..., None
+    ]
     iris = np.array(v.iris) / 255.0
     rays = 1 + 0.16 * np.sin(angle * 23) * np.sin(angle * 7 + 1) + 0.55 * np.clip(-y, 0, 1)
     size = 0.415
     disc = np.clip((size - r) / 0.03, 0, 1)
     inner = iris * (0.75 + 0.6 * np.clip(1 - r / size, 0, 1))[..., None] * rays[..., None]
-    inner *= (1 - 0.55 * np.clip((r - 0.32) / 0.09, 0, 1) - 0.25 * np.clip((y + 0.05) / 0.35, 0, 1))[..., None]
+    inner *= (
+        1 - 0.55 * np.clip((r - 0.32) / 0.09, 0, 1) - 0.25 * np.clip((y + 0.05) / 0.35, 0, 1)
+    )[..., None]
     colour += (inner - colour) * disc[..., None]
     colour *= (1 - 0.95 * np.clip((0.18 - r) / 0.03, 0, 1))[..., None]
     glint = np.clip((0.075 - np.hypot(x - 0.13, y - 0.15)) / 0.03, 0, 1)
@@ -176,5 +188,3 @@ def strands_picture(v: Variant, seed: int = 3) -> Picture:
 
 def _bytes(colour: Array) -> Picture:
     return np.asarray(np.clip(colour * 255 + 0.5, 0, 255), np.uint8)
-
-

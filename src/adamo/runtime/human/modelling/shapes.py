@@ -26,7 +26,8 @@ def round_cone(a: Point, b: Point, radius_a: float, radius_b: float) -> Shape:
         q = p - start
         t = np.clip(q @ axis / square, 0.0, 1.0)
         away = q - t[:, None] * axis
-        return np.sqrt(np.einsum("ij,ij->i", away, away)) - (radius_a + t * (radius_b - radius_a))
+        radius = radius_a + t * (radius_b - radius_a)
+        return np.asarray(np.sqrt(np.einsum("ij,ij->i", away, away)) - radius)
 
     return distance
 
@@ -116,7 +117,9 @@ def common(softness: float, *shapes: Shape) -> Shape:
 
 def minus(softness: float, shape: Shape, *cuts: Shape) -> Shape:
     """A shape without the others."""
-    return lambda p: reduce(lambda a, b: smooth_max(softness, a, -b), (s(p) for s in cuts), shape(p))
+    return lambda p: reduce(
+        lambda a, b: smooth_max(softness, a, -b), (s(p) for s in cuts), shape(p)
+    )
 
 
 def mirrored(shape: Shape) -> Shape:

@@ -24,7 +24,7 @@ class Variant:
     shoes: Colour
     soles: Colour
     hair_style: str
-    """short, bob, ponytail or curls."""
+    """short, bob or curls."""
     neckline: str
     """crew, roll or shirt."""
     feminine: float
@@ -47,7 +47,7 @@ PEOPLE: dict[str, Variant] = {
         ),
         Variant(
             name="jonas", skin=(230, 180, 150), lips=(196, 124, 108), hair=(122, 84, 46),
-            iris=(84, 104, 66), top=(92, 112, 70), trim=(76, 94, 58), trousers=(96, 78, 60),
+            iris=(98, 96, 70), top=(92, 112, 70), trim=(76, 94, 58), trousers=(96, 78, 60),
             shoes=(112, 82, 56), soles=(54, 44, 38), hair_style="short", neckline="shirt",
             feminine=0.0, girth=1.03, stubble=0.55, blush=0.4,
         ),
@@ -59,7 +59,7 @@ PEOPLE: dict[str, Variant] = {
         ),
         Variant(
             name="ken", skin=(216, 164, 124), lips=(186, 112, 94), hair=(34, 29, 28),
-            iris=(66, 44, 28), top=(176, 84, 48), trim=(150, 66, 36), trousers=(74, 72, 70),
+            iris=(66, 44, 28), top=(176, 84, 48), trim=(150, 66, 36), trousers=(82, 74, 64),
             shoes=(70, 60, 54), soles=(104, 82, 58), hair_style="short", neckline="crew",
             feminine=0.15, girth=0.97, blush=0.3,
         ),
