@@ -54,11 +54,11 @@ def measure(scene: str, repeats: int) -> dict[str, float]:
     engine.reset(0)
     config = PerceptionConfig()
     percept = engine.capture(WIDTH, HEIGHT)
-    renderer: SceneRenderer = engine.renderer
+    renderer: SceneRenderer = engine.stage.renderer
     data, camera = engine.data, percept.camera
 
     def observe() -> object:
-        engine.forget_view()
+        engine.stage.forget()
         seen = engine.capture(WIDTH, HEIGHT)
         return perceive(seen, engine.raycast, config, engine.object_names)
 

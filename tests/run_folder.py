@@ -130,7 +130,9 @@ class Recorder:
     def acted(self, name: str, arguments: Mapping[str, Any] | None, feedback: Feedback) -> None:
         self.step += 1
         digest = self.world.hash()
-        self.writer.notify(Acted(self.step, name, arguments, feedback, self.agent, digest, "{}", 0.31))
+        self.writer.notify(
+            Acted(self.step, name, arguments, feedback, self.agent, digest, "{}", 0.31)
+        )
 
     def end(self, answer: str, reason: TerminationReason = TerminationReason.ANSWERED) -> None:
         if reason is TerminationReason.ANSWERED:

@@ -18,6 +18,7 @@ from adamo.perception.visibility import visible_objects
 from adamo.runtime.assets.bake import load_asset
 from adamo.runtime.builtin import BuiltinEngine
 from adamo.runtime.embodiment import REACH_M, REACH_TOP_M
+from adamo.runtime.human.looks import load_figure
 from adamo.runtime.scenes import load_scene
 from adamo.runtime.world import World, build_world
 
@@ -67,7 +68,7 @@ def engine(living_room: BuiltinEngine) -> BuiltinEngine:
 @pytest.fixture(scope="module")
 def world() -> World:
     """The compiled scene, before anything settles."""
-    return build_world(load_scene("s2"))
+    return build_world(load_scene("s2"), load_figure())
 
 
 # --- the scene is that of the paper ------------------------------------------------------------

@@ -102,6 +102,9 @@ class Code(StrEnum):
     PLACED_ELSEWHERE = "placed_elsewhere"
     """Drop went to the nearest free spot."""
 
+    CANCELLED = "cancelled"
+    """Stopped on request, before the end."""
+
     UNKNOWN_TOOL = "unknown_tool"
     BAD_ARGUMENT = "bad_argument"
     UNKNOWN_TAG = "unknown_tag"

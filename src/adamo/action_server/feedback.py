@@ -18,6 +18,8 @@ _WHY = {
 
 def looked(report: BodyReport) -> Feedback:
     """After Look."""
+    if report.code == Code.CANCELLED:
+        return _stopped(report)
     if report.outcome is Outcome.DONE:
         return _feedback(report, f"looking at {report.point}")
     return _feedback(report, f"the neck does not turn that far; looking at {report.point}")
@@ -25,6 +27,8 @@ def looked(report: BodyReport) -> Feedback:
 
 def walked(report: BodyReport, target: Vec3) -> Feedback:
     """After Walk to a target."""
+    if report.code == Code.CANCELLED:
+        return _stopped(report)
     if report.point is None:
         return _refusal(report, "no way leads there")
     if report.outcome is Outcome.DONE:
@@ -40,6 +44,8 @@ def walked(report: BodyReport, target: Vec3) -> Feedback:
 
 def picked(report: BodyReport, tag: str) -> Feedback:
     """After Pick."""
+    if report.code == Code.CANCELLED:
+        return _stopped(report)
     if report.outcome is Outcome.REFUSED:
         return _refusal(report, f"there is no place to stand from which {tag} is within reach")
     return _feedback(report, f"{_closer(report)}{tag} is in your hand")
@@ -47,6 +53,8 @@ def picked(report: BodyReport, tag: str) -> Feedback:
 
 def dropped(report: BodyReport, tag: str, target: Vec3, support: str) -> Feedback:
     """After Drop at a target; `support` names what the object rests on, in the agent's words."""
+    if report.code == Code.CANCELLED:
+        return _stopped(report)
     if report.outcome is Outcome.REFUSED or report.point is None:
         return _refusal(report, "there is no place to stand from which that point is within reach")
     rest = f"{tag} rests at {report.point} {support}"
@@ -58,6 +66,10 @@ def dropped(report: BodyReport, tag: str, target: Vec3, support: str) -> Feedbac
         f"{_closer(report)}the very point was not free or not supported; {rest}, "
         f"{off:.2f} m from it",
     )
+
+
+def _stopped(report: BodyReport) -> Feedback:
+    return _feedback(report, f"stopped on request before the end, at {report.point}")
 
 
 def _closer(report: BodyReport) -> str:

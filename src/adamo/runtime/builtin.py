@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,14 +15,16 @@ from adamo.action import Code, Outcome
 from adamo.engine import BodyReport, ObjectState, SceneInfo, WorldState
 from adamo.errors import EngineError
 from adamo.geometry import Array, Camera, Vec3
-from adamo.observation import BodyState, Percept, SeenObject
+from adamo.observation import BodyState, Percept
 from adamo.runtime import physics
 from adamo.runtime.embodiment import REACH_M, REACH_TOP_M, Body
+from adamo.runtime.human.looks import VARIANTS, load_figure
+from adamo.runtime.human.motion import drop_motion, look_motion, pick_motion, walk_motion
 from adamo.runtime.navigation import BODY_RADIUS_M, FloorMap, Path
 from adamo.runtime.placement import Spot, free_spots, spread
-from adamo.runtime.rendering import SceneRenderer
 from adamo.runtime.scenes.scene import Scene, load_scene
 from adamo.runtime.solids import Solid
+from adamo.runtime.stage import Stage
 from adamo.runtime.world import World, build_world
 
 if TYPE_CHECKING:
@@ -33,6 +35,8 @@ _AS_ASKED_M = 0.05
 _REACH_MARGIN_M = 0.02
 _SHOULDERS_M = (1.35, 0.7)
 """Heights from which a line to the target must be free: upright, or crouching."""
+_OVERHEAD_M = 1.75
+"""What is higher does not keep the body off: it can stand below."""
 _MAX_SPOT_CHECKS = 60
 _MAX_SNAPSHOT_BYTES = 5_000_000
 
@@ -60,20 +64,22 @@ class _Snapshot:
 class BuiltinEngine:
     """A scene, its physics and one body. Implements `adamo.engine.Engine`."""
 
-    def __init__(self, scene: str | Scene = "s1") -> None:
+    def __init__(self, scene: str | Scene = "s1", figure: str = VARIANTS[0]) -> None:
         """Load a scene and settle it.
 
         Args:
             scene: Name of a built-in scene, path of a scene file, or a loaded scene.
+            figure: Who the virtual human is, one of `adamo.runtime.human.looks.VARIANTS`.
 
         Raises:
             SceneError: The scene is unknown or wrong.
+            ConfigError: No figure has this name.
         """
         self._scene = load_scene(scene) if isinstance(scene, str) else scene
         self._info = self._scene.info()
-        self._world: World = build_world(self._scene)
-        self._renderer: SceneRenderer | None = None
-        self._view: tuple[object, Percept] | None = None
+        self._world: World = build_world(self._scene, load_figure(figure))
+        self.stage = Stage(self._world)
+        """Draws the world, and lets actions be watched."""
         self._said: list[str] = []
         physics.settle(self._world, None)
         self._settled = self._world.data.qpos.copy()
@@ -112,36 +118,11 @@ class BuiltinEngine:
     def capture(self, width_px: int, height_px: int) -> Percept:
         """See the room through the body's eyes."""
         camera = self._body.camera(width_px, height_px)
-        return self.view(camera)
+        return self.stage.view(self._body, camera, from_the_eyes=True)
 
     def view(self, camera: Camera) -> Percept:
-        """The world from any camera. An unchanged view is not drawn twice."""
-        data = self._world.data
-        key = (camera, self._body, data.qpos.tobytes())
-        if self._view is not None and self._view[0] == key:
-            return self._view[1]
-        rgb = self.renderer.color(data, camera)
-        layers = self.renderer.layers(data, camera)
-        present = frozenset[int]().union(*(layer.present for layer in layers))
-        seen = {
-            i: SeenObject(i, self._world.objects[i].class_name, self._world.box(i))
-            for i in sorted(present)
-        }
-        id_layers = tuple(layer.ids for layer in layers)
-        percept = Percept(rgb, id_layers, seen, self._body.state(), camera)
-        self._view = (key, percept)
-        return percept
-
-    def forget_view(self) -> None:
-        """Draw the next view even if nothing changed (for measuring)."""
-        self._view = None
-
-    @property
-    def renderer(self) -> SceneRenderer:
-        """What draws the world; opened when it is first needed."""
-        if self._renderer is None:
-            self._renderer = SceneRenderer(self._world.model, self._world.object_of_geom)
-        return self._renderer
+        """The world, with the body in it, from any camera."""
+        return self.stage.view(self._body, camera, from_the_eyes=False)
 
     @property
     def data(self) -> mujoco.MjData:
@@ -149,7 +130,7 @@ class BuiltinEngine:
         return self._world.data
 
     def raycast(self, origin: Vec3, directions: Array) -> Sequence[Vec3 | None]:
-        """First hits of rays; the held object is ignored (the body has no geometry)."""
+        """First hits of rays; the held object is ignored (rays do not see the figure)."""
         return physics.raycast(self._world, origin, directions, self._body.held)
 
     def body(self) -> BodyState:
@@ -161,15 +142,19 @@ class BuiltinEngine:
     def look_at(self, point: Vec3) -> BodyReport:
         """Turn body and gaze to a point."""
         body, exact = self._body.facing(point)
-        self._move(body)
+        self._move(self.stage.perform(look_motion(self._body, body, self._held_size())))
+        if self._body != body:
+            return BodyReport(Outcome.CORRECTED, Code.CANCELLED, self._body.gaze)
         if exact:
             return BodyReport(Outcome.DONE, Code.OK, body.gaze)
         return BodyReport(Outcome.CORRECTED, Code.GAZE_LIMITED, body.gaze)
 
     def walk_to(self, point: Vec3) -> BodyReport:
         """Walk to the reachable place that is nearest to a point."""
-        path = self._floor().ways_from(self._body.position).to_nearest(point)
-        self._walk(path)
+        start = self._body.position
+        path = self._floor().ways_from(start).to_nearest(point)
+        if not self._walk(path):
+            return self._cancelled(start)
         walked = path.length_m
         if path.end.horizontal_distance(point) <= _AS_ASKED_M:
             return BodyReport(Outcome.DONE, Code.OK, path.end, walked_m=walked)
@@ -179,22 +164,26 @@ class BuiltinEngine:
         """Take an object into the hand, walking closer if needed."""
         if self._body.held is not None:
             return BodyReport(Outcome.REFUSED, Code.HAND_FULL)
-        target = self._world.box(object_id).center
-        keep_off = BODY_RADIUS_M if target.z < 1.75 else 0.0
-        path = self._way_to(target, keep_off)
+        start, target = self._body.position, self._world.box(object_id).center
+        path = self._way_to(target, BODY_RADIUS_M if target.z < _OVERHEAD_M else 0.0)
         if path is None:
             return BodyReport(Outcome.REFUSED, Code.UNREACHABLE)
-        self._walk(path)
-        body, _ = self._body.facing(target)
-        self._body = Body(body.position, body.heading_rad, body.gaze, object_id)
-        self._carry()
+        if not self._walk(path):
+            return self._cancelled(start)
+        facing, _ = self._body.facing(target)
+        holding = replace(facing, held=object_id)
+        size = self._world.objects[object_id].size
+        motion = pick_motion(self._body, holding, target, size)
+        self._move(self.stage.perform(motion, object_id))
+        if self._body.held is None:
+            return self._cancelled(start)
         physics.settle(self._world, object_id)
         code = Code.REPOSITIONED if path.length_m > 0 else Code.OK
         return BodyReport(Outcome.DONE, code, target, walked_m=path.length_m)
 
     def drop(self, point: Vec3) -> BodyReport:
         """Put the held object down at the free spot nearest to a point."""
-        held = self._body.held
+        held, start = self._body.held, self._body.position
         if held is None:
             return BodyReport(Outcome.REFUSED, Code.HAND_EMPTY)
         shape = Solid.around(self._world.box(held))
@@ -205,11 +194,14 @@ class BuiltinEngine:
         if chosen is None:
             return BodyReport(Outcome.REFUSED, Code.UNREACHABLE)
         spot, path = chosen
-        self._walk(path)
-        body, _ = self._body.facing(spot.center)
-        self._body = body
+        if not self._walk(path):
+            return self._cancelled(start)
+        facing, _ = self._body.facing(spot.center)
+        motion = drop_motion(self._body, replace(facing, held=None), spot.center, self._held_size())
+        self._move(self.stage.perform(motion, held, spot.center))
+        if self._body.held is not None:
+            return self._cancelled(start)
         physics.place(self._world, held, spot.center + Vec3(0.0, 0.0, 0.001))
-        self._body = Body(body.position, body.heading_rad, body.gaze)
         physics.settle(self._world, None)
         rest = self._world.box(held).center
         support = physics.supports(self._world, None)[held]
@@ -265,23 +257,33 @@ class BuiltinEngine:
                 return spot, path
         return None
 
-    def _walk(self, path: Path) -> None:
+    def _walk(self, path: Path) -> bool:
+        """Walk a path; False if the body was stopped on the way."""
         if path.length_m <= 0:
-            return
+            return True
         before, end = path.points[-2], path.points[-1]
         heading = math.atan2(end.y - before.y, end.x - before.x)
-        self._move(self._body.walked(end, heading))
+        there = self._body.walked(end, heading)
+        motion = walk_motion(self._body, path, there, self._held_size())
+        self._move(self.stage.perform(motion, self._body.held))
+        return self._body == there
+
+    def _cancelled(self, start: Vec3) -> BodyReport:
+        here = self._body.position
+        walked = here.horizontal_distance(start)
+        return BodyReport(Outcome.CORRECTED, Code.CANCELLED, here, walked_m=walked)
+
+    def _held_size(self) -> Vec3 | None:
+        held = self._body.held
+        return None if held is None else self._world.objects[held].size
 
     def _move(self, body: Body) -> None:
-        self._body = body
-        self._carry()
-
-    def _carry(self) -> None:
-        """Bring the held object to the hand."""
+        """Take a new state, and bring the held object to the hand."""
         import mujoco
 
-        if self._body.held is not None:
-            physics.place(self._world, self._body.held, self._body.hand)
+        self._body = body
+        if body.held is not None:
+            physics.place(self._world, body.held, self.stage.hand(body))
             mujoco.mj_forward(self._world.model, self._world.data)
 
     # --- truth ------------------------------------------------------------------------------
@@ -326,7 +328,4 @@ class BuiltinEngine:
 
     def close(self) -> None:
         """Free graphics memory."""
-        if self._renderer is not None:
-            self._renderer.close()
-            self._renderer = None
-            self._view = None
+        self.stage.close()

@@ -1,7 +1,7 @@
 """The body: where it stands, where it looks, what it holds.
 
-In this form it is an upright capsule with eyes and one hand point. Engines above see only
-`BodyState`; a body with limbs can take its place behind the same few methods.
+This is the state that actions decide. How the figure looks in it, and on the way from one state to
+the next, is the matter of `human.motion`.
 """
 
 from __future__ import annotations
@@ -20,8 +20,6 @@ REACH_M = 0.9
 REACH_TOP_M = 2.07
 """Highest point that the hand reaches."""
 MAX_PITCH_RAD = math.radians(80.0)
-_HAND = Vec3(0.34, -0.20, 1.05)
-"""Hand point in the body's frame: forward, left, up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +35,6 @@ class Body:
     def eyes(self) -> Vec3:
         """World position of the eyes."""
         return self._in_world(Vec3(EYE_FORWARD_M, 0.0, EYE_HEIGHT_M))
-
-    @property
-    def hand(self) -> Vec3:
-        """World position of the hand, which is also that of a held object's centre."""
-        return self._in_world(_HAND)
 
     def _in_world(self, local: Vec3) -> Vec3:
         cos, sin = math.cos(self.heading_rad), math.sin(self.heading_rad)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from adamo.errors import RenderingError
 from adamo.geometry import Camera
 from adamo.observation import NOTHING
+from adamo.runtime.human.skin_mujoco import HEAD_GROUP
 
 if TYPE_CHECKING:
     import mujoco
@@ -149,13 +150,28 @@ class SceneRenderer:
         mujoco.mjr_readPixels(self._buffer, None, rect, context)
         return self._buffer[::-1]
 
-    def color(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.uint8]:
-        """Draw the colour picture: (H, W, 3) uint8."""
+    def color(
+        self, data: mujoco.MjData, camera: Camera, *, head: bool = False
+    ) -> NDArray[np.uint8]:
+        """Draw the colour picture.
+
+        Args:
+            data: The state of the world.
+            camera: From where.
+            head: Draw the figure's head too; not when the camera is in it.
+
+        Returns:
+            (H, W, 3) uint8.
+        """
+        self._option.skingroup[HEAD_GROUP] = head
         rect = self._aim(data, camera)
         return self._draw(rect, self._contexts[0]).copy()
 
-    def layers(self, data: mujoco.MjData, camera: Camera) -> tuple[IdLayer, ...]:
+    def layers(
+        self, data: mujoco.MjData, camera: Camera, *, head: bool = False
+    ) -> tuple[IdLayer, ...]:
         """Which object each pixel shows: in front and, if glass is in view, without the glass."""
+        self._option.skingroup[HEAD_GROUP] = head
         rect = self._aim(data, camera)
         front = self._ids(rect)
         glass = self._glass & front.present

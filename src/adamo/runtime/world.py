@@ -14,6 +14,7 @@ from adamo.geometry import Box, Quaternion, Vec3
 from adamo.observation import NOTHING
 from adamo.runtime.assets.asset import Asset, Collider
 from adamo.runtime.embodiment import FOV_Y_RAD
+from adamo.runtime.human.looks import Figure
 from adamo.runtime.scenes.scene import Furniture, Light, PlacedObject, Scene
 from adamo.runtime.solids import Solid
 
@@ -76,8 +77,8 @@ class World:
         return Box(Vec3.of(q[:3]), item.size, turn)
 
 
-def build_world(scene: Scene) -> World:
-    """Compile a scene.
+def build_world(scene: Scene, figure: Figure) -> World:
+    """Compile a scene with a person in it.
 
     Raises:
         SceneError: An object lies on a level that its furniture does not have.
@@ -86,6 +87,7 @@ def build_world(scene: Scene) -> World:
 
     from adamo.runtime.assets.bake import load_asset
     from adamo.runtime.assets.mujoco_parts import add_asset
+    from adamo.runtime.human.skin_mujoco import add_human
 
     spec = _empty_spec()
     room = scene.room
@@ -119,6 +121,7 @@ def build_world(scene: Scene) -> World:
         _add_object(spec, item, assets[item.id], surfaces)
     for light in scene.lights:
         _add_light(spec, light)
+    add_human(spec, figure)
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)

@@ -209,7 +209,9 @@ def indoor_plant() -> Asset:
     leaves = _foliage(brim - 0.010, size)
     parts = (
         revolve(pot, 44).part(
-            Material("terracotta", texture=paint.terracotta(256, 5), rgba=(1, 1, 1, 1), specular=0.03)
+            Material(
+                "terracotta", texture=paint.terracotta(256, 5), rgba=(1, 1, 1, 1), specular=0.03
+            )
         ),
         revolve(earth, 32)
         .projected("z")

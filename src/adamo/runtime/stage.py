@@ -1,0 +1,137 @@
+"""What can be seen: the figure in its posture, the thing in its hand, and pictures of both.
+
+The engine's logic decides states; the stage shows them, also the moments between two states. It
+never changes how an action ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adamo.geometry import Camera, Vec3
+from adamo.observation import Percept, SeenObject
+from adamo.runtime import physics
+from adamo.runtime.embodiment import Body
+from adamo.runtime.human.motion import BodyFrame, Motion
+from adamo.runtime.human.postures import at_rest
+from adamo.runtime.human.skin_mujoco import pose_human
+from adamo.runtime.rendering import SceneRenderer
+from adamo.runtime.world import World
+
+FRAMES_PER_S = 25
+
+Watcher = Callable[[float], bool]
+"""Is called for every shown moment with the simulated seconds since the action began; what it draws
+then is that moment. Returns False to stop the action there."""
+
+
+class Stage:
+    """Shows one world."""
+
+    def __init__(self, world: World) -> None:
+        """Prepare; graphics are opened when the first picture is drawn."""
+        self._world = world
+        self._renderer: SceneRenderer | None = None
+        self._moment: BodyFrame | None = None
+        self._last: tuple[object, Percept] | None = None
+        self.watcher: Watcher | None = None
+
+    @property
+    def renderer(self) -> SceneRenderer:
+        """What draws the world."""
+        if self._renderer is None:
+            self._renderer = SceneRenderer(self._world.model, self._world.object_of_geom)
+        return self._renderer
+
+    def standing(self, body: Body) -> BodyFrame:
+        """The figure between actions."""
+        return BodyFrame(body, at_rest(body, self._size(body.held)))
+
+    def hand(self, body: Body) -> Vec3:
+        """Where the hand of a standing figure is, and with it what it holds."""
+        return self.standing(body).hand
+
+    def _size(self, object_id: int | None) -> Vec3 | None:
+        return None if object_id is None else self._world.objects[object_id].size
+
+    def view(self, body: Body, camera: Camera, *, from_the_eyes: bool) -> Percept:
+        """Draw the world as it is, with the figure in it. An unchanged view is not drawn twice.
+
+        Args:
+            body: The state of the body.
+            camera: From where.
+            from_the_eyes: The camera is in the head, which must not hide the view.
+        """
+        data = self._world.data
+        shown = self._moment or self.standing(body)
+        key = (camera, from_the_eyes, shown.body, self._moment is None, data.qpos.tobytes())
+        if self._moment is None and self._last is not None and self._last[0] == key:
+            return self._last[1]
+        self._pose(shown)
+        rgb = self.renderer.color(data, camera, head=not from_the_eyes)
+        layers = self.renderer.layers(data, camera, head=not from_the_eyes)
+        present = frozenset[int]().union(*(layer.present for layer in layers))
+        seen = {
+            i: SeenObject(i, self._world.objects[i].class_name, self._world.box(i))
+            for i in sorted(present)
+        }
+        ids = tuple(layer.ids for layer in layers)
+        percept = Percept(rgb, ids, seen, shown.body.state(), camera)
+        self._last = (key, percept)
+        return percept
+
+    def picture(self, body: Body, camera: Camera) -> NDArray[np.uint8]:
+        """Only the colour picture from outside, (H, W, 3): for videos."""
+        self._pose(self._moment or self.standing(body))
+        return self.renderer.color(self._world.data, camera, head=True)
+
+    def forget(self) -> None:
+        """Draw the next view even if nothing changed."""
+        self._last = None
+
+    def perform(self, motion: Motion, thing: int | None = None, rest: Vec3 | None = None) -> Body:
+        """Let an action be watched, if somebody watches.
+
+        Args:
+            motion: How the body moves.
+            thing: What is taken, put down or carried meanwhile.
+            rest: Where it is put down.
+
+        Returns:
+            The body at the end of the motion, or where the watcher stopped it.
+        """
+        if self.watcher is None:
+            return motion.end
+        data = self._world.data
+        kept = data.qpos.copy()
+        moments = np.arange(0.0, motion.duration_s, 1.0 / FRAMES_PER_S)
+        try:
+            for seconds in (*moments.tolist(), motion.duration_s):
+                self._moment = motion.at(seconds)
+                if thing is not None and self._moment.body.held == thing:
+                    physics.place(self._world, thing, self._moment.hand)
+                elif thing is not None and rest is not None:
+                    physics.place(self._world, thing, rest)
+                if not self.watcher(seconds):
+                    return motion.body_at(seconds)
+        finally:
+            self._moment = None
+            data.qpos[:] = kept
+        return motion.end
+
+    def _pose(self, shown: BodyFrame) -> None:
+        import mujoco
+
+        pose_human(self._world.model, self._world.data, *shown.joints())
+        mujoco.mj_kinematics(self._world.model, self._world.data)
+        mujoco.mj_camlight(self._world.model, self._world.data)
+
+    def close(self) -> None:
+        """Free graphics memory."""
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
+            self._last = None
