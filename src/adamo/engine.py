@@ -200,7 +200,7 @@ class Engine(Protocol):
         ...
 
     def restore(self, snapshot: bytes) -> None:
-        """Go back to a snapshot, also one of another process; the same calls then give the same states.
+        """Go back to a snapshot, also of another process; the same calls give the same states.
 
         Raises:
             EngineError: It is damaged or belongs to another scene.

@@ -45,6 +45,9 @@ def run(
     resume: Annotated[
         Path | None, typer.Option(help="Go on with an interrupted run; takes no other setting.")
     ] = None,
+    video: Annotated[
+        Path | None, typer.Option(help="Film the episode: FILE.webm (VP9) or FILE.avi.")
+    ] = None,
     json: Json = False,
 ) -> None:
     """Run one episode: an instruction in plain words, or a task of the benchmark."""
@@ -67,6 +70,7 @@ def run(
         resolution=resolution,
         text_form=text,
         max_steps=max_steps,
+        video=video,
     )
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,8 @@ from rich.console import Console
 from adamo.benchmark.episode import EpisodeResult, to_json
 from adamo.cli.progress import Progress
 from adamo.cognition.termination import Limits
+from adamo.cognition.trajectory import Observer
+from adamo.engine import Engine
 from adamo.errors import ConfigError
 
 RUNS = Path("runs")
@@ -26,24 +30,44 @@ def run_and_show(
     out: Path | None,
     resolution: str,
     max_steps: int,
+    video: Path | None,
     **settings: Any,
 ) -> None:
     """Run an episode and print what happens, or one JSON object at the end."""
     from adamo.assemble import run_episode
 
     folder = out or new_run_folder(settings["task"] or instruction or "")
-    progress = () if as_json else (Progress(Console()),)
-    result = run_episode(
-        instruction,
-        resolution=parse_resolution(resolution),
-        limits=Limits(max_steps=max_steps),
-        out=folder,
-        observers=progress,
-        **settings,
-    )
+    with ExitStack() as stack:
+        observers: list[Observer] = [] if as_json else [Progress(Console())]
+        if video is not None:
+            settings["engine"] = stack.enter_context(filming(video, settings["scene"], observers))
+        result = run_episode(
+            instruction,
+            resolution=parse_resolution(resolution),
+            limits=Limits(max_steps=max_steps),
+            out=folder,
+            observers=observers,
+            **settings,
+        )
     if out is None:
         _mark_latest(folder)
     _show(result, folder, as_json=as_json)
+
+
+@contextmanager
+def filming(path: Path, scene: str, observers: list[Observer]) -> Iterator[Engine]:
+    """An engine whose episode is filmed; the film is finished at the end."""
+    from adamo.adapters.video import VideoRecorder
+    from adamo.runtime.builtin import BuiltinEngine
+
+    engine = BuiltinEngine(scene)
+    recorder = VideoRecorder(path, engine)
+    observers.append(recorder)
+    try:
+        yield engine
+    finally:
+        recorder.close()
+        engine.close()
 
 
 def resume_and_show(folder: Path, *, as_json: bool) -> None:

@@ -139,6 +139,11 @@ class BuiltinEngine:
 
     # --- act --------------------------------------------------------------------------------
 
+    @property
+    def figure(self) -> Body:
+        """The body's state, for the stage."""
+        return self._body
+
     def look_at(self, point: Vec3) -> BodyReport:
         """Turn body and gaze to a point."""
         body, exact = self._body.facing(point)

@@ -21,7 +21,7 @@ from adamo.runtime.human.skin_mujoco import pose_human
 from adamo.runtime.rendering import SceneRenderer
 from adamo.runtime.world import World
 
-FRAMES_PER_S = 25
+FRAMES_PER_S = 15
 
 Watcher = Callable[[float], bool]
 """Is called for every shown moment with the simulated seconds since the action began; what it draws
@@ -66,7 +66,7 @@ class Stage:
             from_the_eyes: The camera is in the head, which must not hide the view.
         """
         data = self._world.data
-        shown = self._moment or self.standing(body)
+        shown = self.shown(body)
         key = (camera, from_the_eyes, shown.body, self._moment is None, data.qpos.tobytes())
         if self._moment is None and self._last is not None and self._last[0] == key:
             return self._last[1]
@@ -83,10 +83,14 @@ class Stage:
         self._last = (key, percept)
         return percept
 
-    def picture(self, body: Body, camera: Camera) -> NDArray[np.uint8]:
-        """Only the colour picture from outside, (H, W, 3): for videos."""
-        self._pose(self._moment or self.standing(body))
-        return self.renderer.color(self._world.data, camera, head=True)
+    def picture(self, body: Body, camera: Camera, *, head: bool = True) -> NDArray[np.uint8]:
+        """Only the colour picture of this moment, (H, W, 3); without the head to look out of it."""
+        self._pose(self.shown(body))
+        return self.renderer.color(self._world.data, camera, head=head)
+
+    def shown(self, body: Body) -> BodyFrame:
+        """What is to be seen now: a moment of an action, or the figure between actions."""
+        return self._moment or self.standing(body)
 
     def forget(self) -> None:
         """Draw the next view even if nothing changed."""

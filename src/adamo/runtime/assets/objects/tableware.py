@@ -23,7 +23,7 @@ _GREENS: tuple[tuple[paint.Colour, paint.Colour], ...] = (
 )
 """Blade and ribs of the leaves, from the old to the young."""
 _STEM_ROWS, _BLADE_ROWS = 3, 7
-_LEAVES = 34
+_LEAVES = 38
 
 
 def glass() -> Asset:
@@ -32,8 +32,8 @@ def glass() -> Asset:
     wall = np.array(
         (
             (0.0405, -0.0545),
-            (0.0486, 0.0690),
-            (0.0464, 0.0690),
+            (0.0488, 0.0696),
+            (0.0465, 0.0696),
             (0.0383, -0.0545),
         )
     )
@@ -53,12 +53,12 @@ def glass() -> Asset:
         [0, 0, 0, 0.002, 0, 0, 0.004, 0],
         3,
     )
-    rim = np.array(((0.0486, 0.0688), (0.0500, 0.0702), (0.0490, 0.0715), (0.0474, 0.0715)))
-    rim = np.vstack((rim, ((0.0464, 0.0702), (0.0464, 0.0688))))
+    rim = np.array(((0.0487, 0.0694), (0.0500, 0.0705), (0.0490, 0.0715), (0.0474, 0.0715)))
+    rim = np.vstack((rim, ((0.0466, 0.0705), (0.0466, 0.0694))))
     parts = (
-        _clear(revolve(base, 48), "base", 0.52, paint.flat((150, 158, 156))),
+        _clear(revolve(base, 48), "base", 0.52, paint.flat((172, 179, 176))),
         _clear(revolve(wall, 48), "wall", 0.28, _streaks()),
-        revolve(rim, 48).part(Material("rim", (0.66, 0.68, 0.68, 1.0), specular=0.1)),
+        revolve(rim, 48).part(Material("rim", (0.62, 0.64, 0.63, 1.0), specular=0.05)),
     )
     return Asset(
         class_name="Glass",
@@ -146,8 +146,8 @@ def plate() -> Asset:
             (0.0, -0.0090),
         )
     )
-    radii = [0, 0, 0.001, 0.001, 0, 0.012, 0.002, 0.001, 0.001, 0.002, 0.012, 0.012, 0]
-    profile = fillet(corners, radii, 4)
+    radii = [0, 0, 0, 0, 0, 0.012, 0.002, 0, 0.001, 0.002, 0.012, 0.012, 0]
+    profile = fillet(corners, radii, 3)
     top = int(profile[:, 1].argmax())
     steps = np.linalg.norm(np.diff(profile, axis=0), axis=1)
     along = np.concatenate(((0.0,), np.cumsum(steps))) / steps.sum()
@@ -172,7 +172,7 @@ def plate() -> Asset:
         ),
         1024,
     )
-    parts = (_glazed(revolve(profile, 52), "glaze", (1.0, 1.0, 1.0, 1.0), picture),)
+    parts = (_glazed(revolve(profile, 72), "glaze", (1.0, 1.0, 1.0, 1.0), picture),)
     return Asset(
         class_name="Plate",
         size=size,
@@ -253,7 +253,7 @@ def _streaks() -> paint.Picture:
     """(8, 256, 3) upright lighter and darker bands: what a round wall mirrors and bends."""
     angle = (np.arange(256) + 0.5) / 256 * 2 * np.pi
     wave = 0.5 * np.cos(5 * angle) + 0.3 * np.cos(11 * angle + 1.0) + 0.2 * np.cos(17 * angle)
-    level = np.clip(0.66 + 0.30 * wave, 0.3, 0.92)
+    level = np.clip(0.74 + 0.26 * wave, 0.35, 0.97)
     tint = np.array((0.97, 1.0, 0.99))
     row = np.rint(255 * level[:, None] * tint).astype(np.uint8)
     return np.repeat(row[None], 8, axis=0)
@@ -282,8 +282,8 @@ def _foliage(root: float, size: tuple[float, float, float]) -> list[Mesh]:
         outer = (i + 0.5) / _LEAVES
         leaf = _leaf(
             stem=0.128 - 0.050 * outer + rng.uniform(-0.012, 0.012),
-            blade=0.088 + 0.016 * rng.uniform(-1.0, 1.0),
-            width=0.052 + 0.006 * rng.uniform(-1.0, 1.0),
+            blade=0.094 + 0.014 * rng.uniform(-1.0, 1.0),
+            width=0.062 + 0.007 * rng.uniform(-1.0, 1.0),
             rise_deg=(86.0 - 34.0 * outer, 50.0 - 105.0 * outer + rng.uniform(-12.0, 12.0)),
         )
         start = 0.006 + 0.028 * outer
