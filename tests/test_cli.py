@@ -113,3 +113,11 @@ def test_doctor_finds_a_working_machine(tmp_path: Path) -> None:
     assert set(findings) == {"versions", "cache", "graphics", "test frame", "keys"}
     assert all(finding["ok"] for finding in findings.values())
     assert "objects in view" in findings["test frame"]["found"]
+
+
+def test_the_figure_is_exported_with_its_clips(tmp_path: Path) -> None:
+    done = adamo("figure", "out/ken.glb", "--who", "ken", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "clips walk, reach, idle" in done.stdout
+    assert (tmp_path / "out" / "ken.glb").read_bytes()[:4] == b"glTF"
+    assert "choose one of" in adamo("figure", "x.glb", "--who", "bob", cwd=tmp_path).stderr

@@ -59,6 +59,7 @@ def test_a_scripted_episode_is_scored_and_recorded(
     assert result.model_kind is ModelKind.SCRIPTED
     assert result.calls == {"Drop": 1, "Look": 1, "Pick": 1}
     assert (result.steps, result.model_calls, result.missing_notes) == (3, 4, 0)
+    assert 4.0 < result.direct_m <= result.walked_m < 6.0
     folder = tmp_path / "run"
     manifest, trajectory = read_manifest(folder), read_trajectory(folder)
     assert manifest.config.task == "T4"

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from adamo.engine import SceneInfo
 from adamo.geometry import Vec3
 from adamo.runtime.navigation import BODY_RADIUS_M, FloorMap
-from adamo.runtime.solids import Solid
+from adamo.runtime.solids import Solid, Solids
 
 ROOM = SceneInfo("room", -3, -5, 3, 3, 3.2, ())
 TABLE = Solid(-0.05, -1.0, 0.525, 0.83, 0.0, 0.0, 0.78)
@@ -75,7 +75,8 @@ def test_what_hangs_high_does_not_block() -> None:
 
 @pytest.mark.parametrize("yaw", [0.0, 0.5, math.pi / 4])
 def test_solids_block_lines_through_them_only(yaw: float) -> None:
-    solid = Solid(0, 0, 0.5, 0.3, yaw, 0.0, 0.8)
-    assert solid.blocks(Vec3(-2, 0, 0.4), Vec3(2, 0, 0.4))
-    assert not solid.blocks(Vec3(-2, 0, 0.9), Vec3(2, 0, 0.9))
-    assert not solid.blocks(Vec3(-2, 0, 1.4), Vec3(0, 0, 0.81))
+    solids = Solids.of([Solid(0, 0, 0.5, 0.3, yaw, 0.0, 0.8), Solid(0, 3, 0.1, 0.1, yaw, 0.0, 2.0)])
+    assert solids.block(Vec3(-2, 0, 0.4), Vec3(2, 0, 0.4))
+    assert not solids.block(Vec3(-2, 0, 0.9), Vec3(2, 0, 0.9))
+    assert not solids.block(Vec3(-2, 0, 1.4), Vec3(0, 0, 0.81))
+    assert not Solids.of([]).block(Vec3(-2, 0, 0.4), Vec3(2, 0, 0.4))

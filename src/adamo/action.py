@@ -129,6 +129,8 @@ class Feedback:
     """One of `Code`, or a string of a tool added from outside."""
     text: str
     """One short, truthful sentence or two."""
+    walked_m: float = 0.0
+    """Length of the way that the body walked for it, metres."""
 
     @classmethod
     def of_error(cls, error: InvalidActionError) -> Feedback:

@@ -77,7 +77,8 @@ def _closer(report: BodyReport) -> str:
 
 
 def _feedback(report: BodyReport, text: str) -> Feedback:
-    return Feedback(report.outcome, report.code, f"{report.outcome.capitalize()}: {text}.")
+    sentence = f"{report.outcome.capitalize()}: {text}."
+    return Feedback(report.outcome, report.code, sentence, report.walked_m)
 
 
 def _refusal(report: BodyReport, unreachable: str) -> Feedback:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -118,6 +119,10 @@ class EpisodeResult:
     """Input plus output of all model calls."""
     model_s: float
     world_s: float
+    walked_m: float
+    """Metres walked."""
+    direct_m: float
+    """The same from place to place in straight lines: no way could be shorter."""
     run: str | None
     """The run folder."""
     state_hash: str
@@ -160,6 +165,7 @@ def summarise(
     if config.task is not None and ended.reason.is_scored:
         scored = score(manifest.initial, final, task(config.task))
     kinds = Counter(act.name for act in trajectory.acts)
+    stops = [manifest.initial.body.position, *(act.agent.position for act in trajectory.acts)]
     return EpisodeResult(
         task=config.task,
         instruction=config.instruction,
@@ -181,6 +187,8 @@ def summarise(
         tokens=sum(t.usage.total_tokens for t in trajectory.thoughts),
         model_s=sum(t.model_s for t in trajectory.thoughts),
         world_s=sum(act.world_s for act in trajectory.acts),
+        walked_m=sum(act.feedback.walked_m for act in trajectory.acts),
+        direct_m=sum(a.horizontal_distance(b) for a, b in pairwise(stops)),
         run=None if run is None else str(run),
         state_hash=ended.state_hash,
         final=final,

@@ -128,3 +128,14 @@ def doctor(json: Json = False) -> None:
     from adamo.cli.doctor import examine
 
     examine(as_json=json)
+
+
+@app.command()
+def figure(
+    file: Annotated[Path, typer.Argument(help="FILE.glb to write.")],
+    who: Annotated[str, typer.Option(help="mara, jonas, amina or ken.")] = "mara",
+) -> None:
+    """Export the virtual human as a skinned GLB with the clips walk, reach and idle."""
+    from adamo.cli.figure import export
+
+    export(file, who)

@@ -150,7 +150,7 @@ def result_json(result: EpisodeResult) -> dict[str, Any]:
     keys = (
         "task instruction scene labeling model model_kind seed completion strict conditions "
         "violations termination answer steps model_calls calls missing_notes tokens model_s "
-        "world_s run state_hash"
+        "world_s walked_m direct_m run state_hash"
     )
     world = [
         {
@@ -187,4 +187,5 @@ def _print_result(console: Console, result: EpisodeResult, folder: Path) -> None
     calls = ", ".join(f"{name} {count}" for name, count in result.calls.items()) or "none"
     line("calls", f"{calls}; {result.tokens} tokens; {result.termination}")
     line("time", f"model {result.model_s:.1f} s, world {result.world_s:.1f} s")
+    line("walked", f"{result.walked_m:.1f} m, {result.direct_m:.1f} m in straight lines")
     line("page", str(folder / "episode.html"))

@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from adamo.engine import SceneInfo
 from adamo.geometry import Array, Vec3
-from adamo.runtime.solids import Solid
+from adamo.runtime.solids import Solid, Solids
 
 CELL_M = 0.05
 BODY_RADIUS_M = 0.25
@@ -55,13 +55,25 @@ class FloorMap:
             solids: Everything that the body must not touch.
         """
         self._room = room
-        self._solids = [s for s in solids if s.overlaps_height(0.0, BODY_HEIGHT_M)]
+        in_the_way = [s for s in solids if s.overlaps_height(0.0, BODY_HEIGHT_M)]
+        self._solids = Solids.of(in_the_way)
         xs = np.arange(room.x_min + CELL_M / 2, room.x_max, CELL_M)
         ys = np.arange(room.y_min + CELL_M / 2, room.y_max, CELL_M)
         self._shape = (len(xs), len(ys))
         grid = np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1)
         self._centres = grid.reshape(-1, 2)
-        self._free = self.clearance(self._centres) >= BODY_RADIUS_M
+        free = (self._wall_clearance(self._centres) >= BODY_RADIUS_M).reshape(self._shape)
+        for solid in in_the_way:
+            # Only cells around it can be too close, and there are many solids.
+            far = solid.radius_m + BODY_RADIUS_M
+            near = (
+                slice(*np.searchsorted(xs, [solid.x - far, solid.x + far])),
+                slice(*np.searchsorted(ys, [solid.y - far, solid.y + far])),
+            )
+            cells = grid[near]
+            distance = solid.distance(cells.reshape(-1, 2)).reshape(cells.shape[:2])
+            free[near] &= distance >= BODY_RADIUS_M
+        self._free = free.ravel()
 
     def clearance(self, points: Array) -> Array:
         """Distance of floor points from the nearest wall or solid, in metres.
@@ -72,18 +84,13 @@ class FloorMap:
         Returns:
             (N,); negative outside the room.
         """
+        return np.asarray(np.minimum(self._wall_clearance(points), self._solids.distance(points)))
+
+    def _wall_clearance(self, points: Array) -> Array:
         room = self._room
-        nearest = np.minimum.reduce(
-            [
-                points[:, 0] - room.x_min,
-                room.x_max - points[:, 0],
-                points[:, 1] - room.y_min,
-                room.y_max - points[:, 1],
-            ]
-        )
-        for solid in self._solids:
-            nearest = np.minimum(nearest, solid.distance(points))
-        return np.asarray(nearest)
+        x, y = points[:, 0], points[:, 1]
+        sides = [x - room.x_min, room.x_max - x, y - room.y_min, room.y_max - y]
+        return np.asarray(np.minimum.reduce(sides))
 
     @cached_property
     def _graph(self) -> csr_array:

@@ -7,12 +7,14 @@ move keep their exact pose, so that nothing creeps over a long episode.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from adamo.engine import FLOOR, object_support
 from adamo.geometry import Array, Vec3
+from adamo.runtime.solids import Solid, Solids
 from adamo.runtime.world import World, WorldObject
 
 if TYPE_CHECKING:
@@ -178,4 +180,9 @@ def raycast(
 
 def line_is_free(world: World, start: Vec3, end: Vec3) -> bool:
     """Whether no furniture is between two points."""
-    return not any(solid.blocks(start, end) for solid in world.solids)
+    return not _gathered(world.solids).block(start, end)
+
+
+@lru_cache(maxsize=8)
+def _gathered(solids: tuple[Solid, ...]) -> Solids:
+    return Solids.of(solids)

@@ -48,6 +48,10 @@ def free_spots(
         obstacles: Everything else, static and movable.
     """
     height = shape.z_max - shape.z_min
+    centres = np.array([wish.x, wish.y]) + _offsets()
+    flat = np.hypot(*_offsets().T)
+    within_m = MAX_CORRECTION_M + shape.radius_m + CLEARANCE_M
+    near = [s for s in obstacles if math.hypot(s.x - wish.x, s.y - wish.y) < within_m + s.radius_m]
     spots: list[Spot] = []
     for surface in surfaces:
         top = surface.center.z
@@ -56,13 +60,13 @@ def free_spots(
         miss = max(-lift, lift - height, 0.0)
         if miss > MAX_CORRECTION_M:
             continue
-        centres = np.array([wish.x, wish.y]) + _offsets()
-        beside = [s for s in obstacles if s.overlaps_height(top, top + height)]
-        free = (gaps(centres, shape, beside) >= CLEARANCE_M) & _carried(centres, shape, surface)
-        flat = np.hypot(*_offsets().T)
         distance = np.hypot(flat, miss)
-        for i in np.flatnonzero(free & (distance <= MAX_CORRECTION_M)):
-            center = Vec3(float(centres[i, 0]), float(centres[i, 1]), top + height / 2)
+        fits = (distance <= MAX_CORRECTION_M) & _carried(centres, shape, surface)
+        # The costly test comes last, for the few places that are left.
+        places, distance = centres[fits], distance[fits]
+        beside = [s for s in near if s.overlaps_height(top, top + height)]
+        for i in np.flatnonzero(gaps(places, shape, beside) >= CLEARANCE_M):
+            center = Vec3(float(places[i, 0]), float(places[i, 1]), top + height / 2)
             spots.append(Spot(surface.support, center, float(distance[i])))
     return sorted(spots, key=lambda s: s.distance_m)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,24 +62,72 @@ class Solid:
         across = np.abs(offset @ [-sin, cos]) - self.half_y
         return np.asarray(np.hypot(np.maximum(along, 0), np.maximum(across, 0)))
 
-    def blocks(self, start: Vec3, end: Vec3) -> bool:
-        """Whether a straight line passes through the prism, not counting a skin of 1 cm."""
-        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
-        turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        middle = np.array([self.x, self.y, (self.z_min + self.z_max) / 2])
-        half = np.array([self.half_x, self.half_y, (self.z_max - self.z_min) / 2]) - 0.01
-        if (half <= 0).any():
-            return False
-        a, b = turn @ (start.array() - middle), turn @ (end.array() - middle)
-        along = np.where(np.abs(b - a) < 1e-9, 1e-9, b - a)
-        enter, leave = (-half - a) / along, (half - a) / along
-        first = np.minimum(enter, leave).max()
-        last = np.maximum(enter, leave).min()
-        return bool(first < last and first < 1 and last > 0)
-
     def overlaps_height(self, z_min: float, z_max: float) -> bool:
         """Whether the height ranges share more than 2 mm."""
         return self.z_min < z_max - 0.002 and self.z_max > z_min + 0.002
+
+    @property
+    def radius_m(self) -> float:
+        """Radius of the upright cylinder around the centre that holds the prism, metres."""
+        return math.hypot(self.half_x, self.half_y)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solids:
+    """Many prisms at once, as arrays: a room has more than a hundred."""
+
+    centres: Array
+    """(S, 3) middles in metres."""
+    halves: Array
+    """(S, 3) half extents along the own axes, metres."""
+    axes: Array
+    """(S, 2) cosine and sine of the headings."""
+
+    @classmethod
+    def of(cls, solids: Sequence[Solid]) -> Solids:
+        """Gather prisms."""
+        rows = [
+            (s.x, s.y, (s.z_min + s.z_max) / 2, s.half_x, s.half_y, (s.z_max - s.z_min) / 2)
+            for s in solids
+        ]
+        table = np.array(rows, dtype=np.float64).reshape(-1, 6)
+        yaw = np.array([s.yaw_rad for s in solids], dtype=np.float64)
+        return cls(table[:, :3], table[:, 3:], np.stack([np.cos(yaw), np.sin(yaw)], axis=1))
+
+    def distance(self, points: Array) -> Array:
+        """Horizontal distance of points from the nearest rectangle; 0 inside one.
+
+        Args:
+            points: (N, 2) metres.
+
+        Returns:
+            (N,) metres; infinity where there are no solids.
+        """
+        cos, sin = self.axes.T
+        dx = points[:, :1] - self.centres[:, 0]
+        dy = points[:, 1:] - self.centres[:, 1]
+        along = np.maximum(np.abs(dx * cos + dy * sin) - self.halves[:, 0], 0.0)
+        across = np.maximum(np.abs(dy * cos - dx * sin) - self.halves[:, 1], 0.0)
+        squares = along * along + across * across
+        return np.asarray(np.sqrt(squares.min(axis=1, initial=np.inf)))
+
+    def block(self, start: Vec3, end: Vec3) -> bool:
+        """Whether a straight line passes through any prism, not counting a skin of 1 cm."""
+        half = self.halves - 0.01
+        a, b = self._local(start), self._local(end)
+        along = np.where(np.abs(b - a) < 1e-9, 1e-9, b - a)
+        enter, leave = (-half - a) / along, (half - a) / along
+        first = np.minimum(enter, leave).max(axis=1)
+        last = np.maximum(enter, leave).min(axis=1)
+        passes = (half > 0).all(axis=1) & (first < last) & (first < 1) & (last > 0)
+        return bool(passes.any())
+
+    def _local(self, point: Vec3) -> Array:
+        """(S, 3) the point in each prism's own frame."""
+        cos, sin = self.axes.T
+        offset = point.array() - self.centres
+        x, y = offset[:, 0], offset[:, 1]
+        return np.stack([x * cos + y * sin, y * cos - x * sin, offset[:, 2]], axis=1)
 
 
 def gaps(candidates: Array, shape: Solid, obstacles: list[Solid]) -> Array:
