@@ -108,16 +108,16 @@ def supports(world: World, held: int | None) -> dict[int, str | None]:
         before objects.
     """
     carriers: dict[int, set[str]] = {i: set() for i in world.objects}
-    for contact in world.data.contact[: world.data.ncon]:
-        if abs(contact.frame[2]) < _UPWARD:
-            continue
-        upper, lower = int(contact.geom2), int(contact.geom1)
+    contact = world.data.contact
+    slopes = contact.frame[:, 2]
+    for i in np.flatnonzero(np.abs(slopes) >= _UPWARD):
+        lower, upper = (int(geom) for geom in contact.geom[i])
         # The contact normal points from the first geom to the second.
-        if contact.frame[2] < 0:
+        if slopes[i] < 0:
             upper, lower = lower, upper
         thing = int(world.object_of_geom[upper])
         if thing in carriers and thing != held:
-            carriers[thing].add(_carrier(world, lower, float(contact.pos[2])))
+            carriers[thing].add(_carrier(world, lower, float(contact.pos[i, 2])))
     static = {FLOOR, *(s.support for s in world.surfaces)}
     found: dict[int, str | None] = {}
     for object_id, names in carriers.items():

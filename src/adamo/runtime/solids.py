@@ -111,10 +111,23 @@ class Solids:
         squares = along * along + across * across
         return np.asarray(np.sqrt(squares.min(axis=1, initial=np.inf)))
 
+    def hold(self, points: Array, skin_m: float) -> NDArray[np.bool_]:
+        """Whether points are inside any prism, not counting a skin.
+
+        Args:
+            points: (N, 3) metres.
+            skin_m: How far below the surface inside begins.
+
+        Returns:
+            (N,) true for what is inside.
+        """
+        half = self.halves - skin_m
+        return np.array([(np.abs(self._local(p)) < half).all(axis=1).any() for p in points])
+
     def block(self, start: Vec3, end: Vec3) -> bool:
         """Whether a straight line passes through any prism, not counting a skin of 1 cm."""
         half = self.halves - 0.01
-        a, b = self._local(start), self._local(end)
+        a, b = self._local(start.array()), self._local(end.array())
         along = np.where(np.abs(b - a) < 1e-9, 1e-9, b - a)
         enter, leave = (-half - a) / along, (half - a) / along
         first = np.minimum(enter, leave).max(axis=1)
@@ -122,10 +135,10 @@ class Solids:
         passes = (half > 0).all(axis=1) & (first < last) & (first < 1) & (last > 0)
         return bool(passes.any())
 
-    def _local(self, point: Vec3) -> Array:
-        """(S, 3) the point in each prism's own frame."""
+    def _local(self, point: Array) -> Array:
+        """(S, 3) a point, (3,), in each prism's own frame."""
         cos, sin = self.axes.T
-        offset = point.array() - self.centres
+        offset = point - self.centres
         x, y = offset[:, 0], offset[:, 1]
         return np.stack([x * cos + y * sin, y * cos - x * sin, offset[:, 2]], axis=1)
 

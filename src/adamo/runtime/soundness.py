@@ -12,7 +12,7 @@ from adamo.engine import ObjectState, WorldState
 from adamo.geometry import Vec3
 from adamo.observation import NOTHING, Observation, Percept
 from adamo.runtime.navigation import BODY_HEIGHT_M, BODY_RADIUS_M
-from adamo.runtime.solids import Solid, Solids
+from adamo.runtime.solids import Solids
 from adamo.runtime.world import World
 
 DEPTH_M = 0.003
@@ -33,7 +33,8 @@ class Soundness:
             world: Is read, never changed.
         """
         self._world = world
-        self._furniture = Solids.of(
+        self._furniture = Solids.of(world.solids)
+        self._obstacles = Solids.of(
             [s for s in world.solids if s.overlaps_height(0.0, BODY_HEIGHT_M)]
         )
 
@@ -42,10 +43,8 @@ class Soundness:
         held = state.body.held
         faults = [*self._hand(state), *self._body(state), *self._contacts(held)]
         for item in state.objects:
-            if item.held:
-                if not state.scene.contains(item.box.center):
-                    faults.append(f"held object {item.id} is outside the room")
-            else:
+            # What is held floats before the chest, also where that is in a wall.
+            if not item.held:
                 faults += self._resting(item, state)
         return faults
 
@@ -60,7 +59,7 @@ class Soundness:
     def _body(self, state: WorldState) -> list[str]:
         room, at = state.scene, state.body.position
         walls = min(at.x - room.x_min, room.x_max - at.x, at.y - room.y_min, room.y_max - at.y)
-        furniture = float(self._furniture.distance(np.array([[at.x, at.y]]))[0])
+        furniture = float(self._obstacles.distance(np.array([[at.x, at.y]]))[0])
         nearest = min(walls, furniture)
         faults = []
         if not nearest >= BODY_RADIUS_M - BODY_M:
@@ -79,25 +78,21 @@ class Soundness:
             faults.append(f"object {item.id} at {item.box.center} is not inside the room")
         if item.support is None:
             faults.append(f"object {item.id} at {item.box.center} rests on nothing")
-        if any(_is_inside(item.box.center, solid) for solid in self._world.solids):
+        if self._furniture.hold(item.box.center.array()[None], DEPTH_M)[0]:
             faults.append(f"object {item.id} at {item.box.center} is inside furniture")
         return faults
 
     def _contacts(self, held: int | None) -> list[str]:
-        data, owner = self._world.data, self._world.object_of_geom
+        contact, owner = self._world.data.contact, self._world.object_of_geom
         faults = []
-        for contact in data.contact[: data.ncon]:
-            pair = {int(owner[contact.geom1]), int(owner[contact.geom2])}
-            if contact.dist < -DEPTH_M and pair != {NOTHING} and held not in pair:
-                names = " and ".join("a fixed thing" if i == NOTHING else str(i) for i in pair)
-                faults.append(f"{names} are {-contact.dist:.4f} m in each other")
+        for i in np.flatnonzero(contact.dist < -DEPTH_M):
+            pair = {int(owner[geom]) for geom in contact.geom[i]}
+            if pair != {NOTHING} and held not in pair:
+                names = " and ".join(
+                    "a fixed thing" if j == NOTHING else f"object {j}" for j in pair
+                )
+                faults.append(f"{names} are {-contact.dist[i]:.4f} m in each other")
         return faults
-
-
-def _is_inside(point: Vec3, solid: Solid) -> bool:
-    if not solid.z_min + DEPTH_M < point.z < solid.z_max - DEPTH_M:
-        return False
-    return float(solid.distance(np.array([[point.x, point.y]]))[0]) == 0.0
 
 
 def step_faults(

@@ -1,0 +1,150 @@
+"""Actions can be watched, filmed and stopped; watching changes nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from adamo.action import Code, Outcome
+from adamo.adapters.video import HEIGHT, WIDTH, VideoRecorder
+from adamo.engine import BodyReport
+from adamo.errors import ConfigError
+from adamo.geometry import Vec3
+from adamo.runtime.builtin import BuiltinEngine
+
+PLATE, CUP = 57, 45
+FLOOR = Vec3(-1.6, -2.4, 0.0)
+
+
+def play(engine: BuiltinEngine) -> list[tuple[BodyReport, str]]:
+    engine.reset(0)
+    story = []
+    for act in (
+        lambda: engine.look_at(Vec3(0, -1, 0.8)),
+        lambda: engine.pick(PLATE),
+        lambda: engine.walk_to(Vec3(1.5, 1.5, 0)),
+        lambda: engine.drop(FLOOR),
+    ):
+        report = act()
+        story.append((report, engine.snapshot().hex()))
+    return story
+
+
+def test_watching_changes_no_state_bit_for_bit(engine: BuiltinEngine) -> None:
+    alone = play(engine)
+    engine.stage.watcher = lambda _: True
+    try:
+        assert play(engine) == alone
+    finally:
+        engine.stage.watcher = None
+
+
+def test_the_moments_are_in_order_and_continuous(engine: BuiltinEngine) -> None:
+    times: list[float] = []
+    places: list[Vec3] = []
+    hands: list[Vec3] = []
+
+    def watch(seconds: float) -> bool:
+        shown = engine.stage.shown(engine.figure)
+        times.append(seconds)
+        places.append(shown.body.position)
+        hands.append(shown.hand)
+        return True
+
+    engine.stage.watcher = watch
+    try:
+        engine.walk_to(Vec3(2.0, -1.0, 0.0))
+    finally:
+        engine.stage.watcher = None
+    assert times == sorted(times)
+    assert times[-1] > 3.0
+    steps = [a.distance(b) for a, b in zip(places, places[1:], strict=False)]
+    assert max(steps) < 0.15
+    assert max(a.distance(b) for a, b in zip(hands, hands[1:], strict=False)) < 0.25
+    assert places[-1] == engine.body().position
+
+
+def test_a_thing_is_in_the_hand_from_the_grasp_on(engine: BuiltinEngine) -> None:
+    gaps: list[float] = []
+
+    def watch(_: float) -> bool:
+        shown = engine.stage.shown(engine.figure)
+        if shown.body.held == CUP:
+            gaps.append(shown.hand.distance(engine._world.box(CUP).center))
+        return True
+
+    engine.stage.watcher = watch
+    try:
+        engine.pick(CUP)
+    finally:
+        engine.stage.watcher = None
+    assert gaps
+    assert max(gaps) < 1e-6
+
+
+@pytest.mark.parametrize("moment", [0.0, 0.4, 1.0, 2.0])
+def test_a_walk_can_be_stopped_anywhere(engine: BuiltinEngine, moment: float) -> None:
+    engine.stage.watcher = lambda seconds: seconds < moment
+    try:
+        report = engine.walk_to(Vec3(2.0, -1.0, 0.0))
+    finally:
+        engine.stage.watcher = None
+    assert (report.outcome, report.code) == (Outcome.CORRECTED, Code.CANCELLED)
+    here = engine.body().position
+    assert report.point == here
+    assert here.horizontal_distance(Vec3(2.0, -1.0, 0)) > 1.0
+    assert engine.walk_to(Vec3(2.0, -1.0, 0.0)).outcome is Outcome.DONE
+
+
+def test_a_pick_that_is_stopped_leaves_the_thing_or_holds_it(engine: BuiltinEngine) -> None:
+    """Whenever it is stopped, the thing is either on the table or in the hand, never in between."""
+    seen = set()
+    for moment in np.arange(0.0, 6.0, 0.4):
+        engine.reset(0)
+        engine.walk_to(Vec3(-0.9, -0.4, 0.0))
+        engine.stage.watcher = lambda seconds, stop=moment: seconds < stop
+        engine.pick(CUP)
+        engine.stage.watcher = None
+        cup = engine.state().object(CUP)
+        assert cup.held == (engine.body().held == CUP)
+        assert cup.held or cup.support == "table"
+        seen.add(cup.held)
+    assert seen == {True, False}
+
+
+def test_the_figure_is_seen_from_outside_but_does_not_hide_the_view(
+    engine: BuiltinEngine,
+) -> None:
+    own = engine.capture(640, 360)
+    engine.walk_to(Vec3(1.6, -1.0, 0.0))
+    outside = engine.view(own.camera)
+    assert np.abs(outside.rgb.astype(int) - own.rgb.astype(int)).max(axis=2).mean() > 0.5
+    assert len(own.objects) == 19
+
+
+def test_a_film_can_be_played(engine: BuiltinEngine, tmp_path: Path) -> None:
+    import cv2
+
+    recorder = VideoRecorder(tmp_path / "film.webm", engine)
+    try:
+        engine.look_at(Vec3(0.5, -1.2, 1.0))
+    finally:
+        recorder.close()
+    assert engine.stage.watcher is None
+    film = cv2.VideoCapture(str(tmp_path / "film.webm"))
+    pictures = 0
+    while True:
+        read, picture = film.read()
+        if not read:
+            break
+        pictures += 1
+        assert picture.shape == (HEIGHT, WIDTH, 3)
+        assert picture.std() > 10
+    assert pictures >= 4
+
+
+def test_a_film_needs_a_known_ending(engine: BuiltinEngine, tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"\.webm or \.avi"):
+        VideoRecorder(tmp_path / "film.mp4", engine)
