@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -60,9 +61,9 @@ def test_the_moments_are_in_order_and_continuous(engine: BuiltinEngine) -> None:
         engine.stage.watcher = None
     assert times == sorted(times)
     assert times[-1] > 3.0
-    steps = [a.distance(b) for a, b in zip(places, places[1:], strict=False)]
+    steps = [a.distance(b) for a, b in itertools.pairwise(places)]
     assert max(steps) < 0.15
-    assert max(a.distance(b) for a, b in zip(hands, hands[1:], strict=False)) < 0.25
+    assert max(a.distance(b) for a, b in itertools.pairwise(hands)) < 0.25
     assert places[-1] == engine.body().position
 
 

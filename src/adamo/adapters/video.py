@@ -1,6 +1,6 @@
 """A film of an episode: a camera that follows the figure, what its eyes see, what it thinks.
 
-WebM with VP9, written by the FFmpeg (LGPL) inside OpenCV, so that no GPL library is needed. Asking
+WebM with VP8, written by the FFmpeg (LGPL) inside OpenCV, so that no GPL library is needed. Asking
 for the moments between two states changes nothing about the episode.
 """
 
@@ -28,7 +28,7 @@ _ROOM_PX = (832, 720)
 _EYES_PX = (448, 252)
 _PAUSE_S = 1.2
 """How long a thought stands before the body moves."""
-_CODECS = {".webm": "VP90", ".avi": "MJPG"}
+_CODECS = {".webm": "VP80", ".avi": "MJPG"}
 _DISTANCE_M, _CAMERA_Z_M, _WALL_M = 2.7, 1.75, 0.35
 _FOLLOW = 0.1
 """Share of the way to its ideal place that the camera goes in each frame."""
@@ -47,7 +47,7 @@ class VideoRecorder:
         """Begin to film.
 
         Args:
-            path: Of the film: .webm (VP9) or .avi (Motion JPEG).
+            path: Of the film: .webm (VP8) or .avi (Motion JPEG).
             engine: Whose episode is filmed.
 
         Raises:

@@ -46,7 +46,7 @@ def run(
         Path | None, typer.Option(help="Go on with an interrupted run; takes no other setting.")
     ] = None,
     video: Annotated[
-        Path | None, typer.Option(help="Film the episode: FILE.webm (VP9) or FILE.avi.")
+        Path | None, typer.Option(help="Film the episode: FILE.webm (VP8) or FILE.avi.")
     ] = None,
     json: Json = False,
 ) -> None:
