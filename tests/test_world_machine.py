@@ -109,11 +109,11 @@ class WorldMachine(RuleBasedStateMachine):
         tag = self.server.agent().held or self.tag(0)
         self.call("Drop", {"object": spelling.format(tag), **point})
 
-    @rule(thing=things, target=things, dx=st.floats(-0.3, 0.3), dy=st.floats(-0.3, 0.3))
-    def put_beside(self, thing: int, target: int, dx: float, dy: float) -> None:
+    @rule(thing=things, neighbour=things, dx=st.floats(-0.3, 0.3), dy=st.floats(-0.3, 0.3))
+    def put_beside(self, thing: int, neighbour: int, dx: float, dy: float) -> None:
         """What most tasks ask for."""
         self.call("Pick", {"object": self.tag(thing)})
-        center = self.engine.state().objects[target].box.center
+        center = self.engine.state().objects[neighbour].box.center
         point = {"x": center.x + dx, "y": center.y + dy, "z": center.z}
         self.call("Drop", {"object": self.server.agent().held or "", **point})
 

@@ -94,9 +94,7 @@ def build_world(scene: Scene, figure: Figure) -> World:
     shell = load_room(scene)
     walls = spec.worldbody.add_body(name=ROOM)
     add_asset(spec, walls, shell, ROOM)
-    for geom in walls.geoms:
-        # A floor in the shadow map only shades itself, in speckles.
-        geom.castshadow = False
+    _cast_no_shadow(walls)
     surfaces = [
         WorldSurface(
             FLOOR,
@@ -114,6 +112,8 @@ def build_world(scene: Scene, figure: Figure) -> World:
             name=piece.name, pos=[*piece.position, 0.0], quat=Quaternion.from_yaw(yaw).array()
         )
         add_asset(spec, body, asset, piece.name)
+        if not asset.colliders:
+            _cast_no_shadow(body)
         surfaces += _surfaces(piece, asset)
         solids += [_solid(c, piece.position, yaw) for c in asset.colliders]
     assets = {item.id: load_asset(item.asset) for item in scene.objects}
@@ -140,6 +140,12 @@ def build_world(scene: Scene, figure: Figure) -> World:
         object_of_geom,
         data.qpos.copy(),
     )
+
+
+def _cast_no_shadow(body: mujoco.MjsBody) -> None:
+    """Keep a flat thing out of the shadow map, where it would only shade itself, in speckles."""
+    for geom in body.geoms:
+        geom.castshadow = False
 
 
 def load_room(scene: Scene) -> Asset:
