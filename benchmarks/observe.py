@@ -3,9 +3,10 @@
     python benchmarks/observe.py [--scene s1] [--repeats 15] [--json]
 
 All figures are medians in milliseconds from one process, `ratio` is the median of observations and
-bare pictures drawn in turn; `import_s` and `help_s` are medians of fresh processes. Stages: `render_ms` bare colour picture with read-back, `ids_ms` id passes,
-`visibility_ms` counts and boxes, `points_ms` 36 rays, `overlay_ms` boxes, tags and JPEG,
-`observe_ms` all of it through the public path.
+bare pictures drawn in turn; `import_s` and `help_s` are medians of fresh processes. Stages:
+`render_ms` bare colour picture with read-back, `ids_ms` id passes, `visibility_ms` counts and
+boxes, `points_ms` 36 rays, `overlay_ms` boxes, tags and JPEG, `observe_ms` all of it through the
+public path.
 """
 
 from __future__ import annotations

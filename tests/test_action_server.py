@@ -8,6 +8,8 @@ import pytest
 
 from adamo.action import Code, Drop, Feedback, Look, Outcome, Pick, Walk, tool_schema
 from adamo.action_server import PAPER_TOOLS, LocalActionServer, Tool, ToolContext
+from adamo.action_server.feedback import picked
+from adamo.engine import BodyReport
 from adamo.geometry import Vec3
 from adamo.perception import Labeling, PerceptionConfig
 from adamo.runtime.builtin import BuiltinEngine
@@ -72,6 +74,20 @@ def test_refusals_change_nothing(server: LocalActionServer, action: Pick, code: 
     assert result.feedback.outcome is Outcome.REFUSED
     assert result.feedback.code == code
     assert result.state_hash == before
+
+
+def test_what_is_out_of_reach_is_refused_with_the_nearest_place(
+    server: LocalActionServer, engine: BuiltinEngine
+) -> None:
+    server.execute(Pick("Key_34"))
+    before = server.state_hash()
+    feedback = server.execute(Drop("Key_34", -0.05, -1.0, 2.6)).feedback
+    assert feedback.code == Code.NO_FREE_SPOT
+    report = BodyReport(Outcome.REFUSED, Code.UNREACHABLE, Vec3(1.0, 2.0, 0.0))
+    assert picked(report, "Key_34").text == (
+        "Refused: no place to stand has Key_34 within reach; the nearest is at (1.00, 2.00, 0.00)."
+    )
+    assert server.state_hash() == before
 
 
 def test_one_object_in_the_hand(server: LocalActionServer) -> None:

@@ -127,7 +127,7 @@ class BodyReport:
     code: str
     point: Vec3 | None = None
     """Where the body stopped (walk_to), what the eyes look at (look_at), or where the centre of the
-    object's box came to rest (drop); None if refused."""
+    object's box came to rest (drop). If refused as unreachable, the nearest place to stand."""
     support: str | None = None
     """What the dropped object rests on."""
     walked_m: float = 0.0

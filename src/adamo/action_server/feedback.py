@@ -47,7 +47,7 @@ def picked(report: BodyReport, tag: str) -> Feedback:
     if report.code == Code.CANCELLED:
         return _stopped(report)
     if report.outcome is Outcome.REFUSED:
-        return _refusal(report, f"there is no place to stand from which {tag} is within reach")
+        return _refusal(report, f"no place to stand has {tag} within reach")
     return _feedback(report, f"{_closer(report)}{tag} is in your hand")
 
 
@@ -56,7 +56,7 @@ def dropped(report: BodyReport, tag: str, target: Vec3, support: str) -> Feedbac
     if report.code == Code.CANCELLED:
         return _stopped(report)
     if report.outcome is Outcome.REFUSED or report.point is None:
-        return _refusal(report, "there is no place to stand from which that point is within reach")
+        return _refusal(report, "no place to stand has that point within reach")
     rest = f"{tag} rests at {report.point} {support}"
     if report.outcome is Outcome.DONE:
         return _feedback(report, f"{_closer(report)}{rest}")
@@ -83,4 +83,6 @@ def _feedback(report: BodyReport, text: str) -> Feedback:
 
 def _refusal(report: BodyReport, unreachable: str) -> Feedback:
     why = _WHY.get(Code(report.code), unreachable)
+    if report.point is not None:
+        why = f"{why}; the nearest is at {report.point}"
     return Feedback(report.outcome, report.code, f"Refused: {why}.")

@@ -172,7 +172,7 @@ class BuiltinEngine:
         start, target = self._body.position, self._world.box(object_id).center
         path = self._way_to(target, BODY_RADIUS_M if target.z < _OVERHEAD_M else 0.0)
         if path is None:
-            return BodyReport(Outcome.REFUSED, Code.UNREACHABLE)
+            return self._unreachable(target)
         if not self._walk(path):
             return self._cancelled(start)
         facing, _ = self._body.facing(target)
@@ -197,7 +197,7 @@ class BuiltinEngine:
             return BodyReport(Outcome.REFUSED, Code.NO_FREE_SPOT)
         chosen = self._reachable_spot(spots, math.hypot(shape.half_x, shape.half_y))
         if chosen is None:
-            return BodyReport(Outcome.REFUSED, Code.UNREACHABLE)
+            return self._unreachable(point)
         spot, path = chosen
         if not self._walk(path):
             return self._cancelled(start)
@@ -272,6 +272,11 @@ class BuiltinEngine:
         motion = walk_motion(self._body, path, there, self._held_size())
         self._move(self.stage.perform(motion, self._body.held))
         return self._body == there
+
+    def _unreachable(self, target: Vec3) -> BodyReport:
+        """A refusal that names the nearest place that could be walked to."""
+        nearest = self._floor().ways_from(self._body.position).to_nearest(target).end
+        return BodyReport(Outcome.REFUSED, Code.UNREACHABLE, nearest)
 
     def _cancelled(self, start: Vec3) -> BodyReport:
         here = self._body.position
