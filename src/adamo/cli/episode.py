@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -39,12 +40,15 @@ def run_and_show(
     folder = out or new_run_folder(settings["task"] or instruction or "")
     with ExitStack() as stack:
         observers: list[Observer] = [] if as_json else [Progress(Console())]
+        limits = Limits(max_steps=max_steps)
         if video is not None:
             settings["engine"] = stack.enter_context(filming(video, settings["scene"], observers))
+            # Drawing the film takes minutes that are not the agent's.
+            limits = replace(limits, max_seconds=1e9)
         result = run_episode(
             instruction,
             resolution=parse_resolution(resolution),
-            limits=Limits(max_steps=max_steps),
+            limits=limits,
             out=folder,
             observers=observers,
             **settings,
