@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import colorsys
 import json
+import math
 import struct
 from importlib.resources import files
 
@@ -11,12 +12,14 @@ import numpy as np
 import pytest
 
 from adamo.errors import ConfigError
+from adamo.geometry import Camera, Vec3
 from adamo.runtime.human.clips import Clip
 from adamo.runtime.human.glb import linear, write_glb
 from adamo.runtime.human.looks import HEAD_GARMENTS, VARIANTS, load_figure
 from adamo.runtime.human.modelling.variant import PEOPLE
 from adamo.runtime.human.skeleton import EYES, INDEX, JOINTS, REST, Pose, joint_frames
-from adamo.runtime.human.skin_mujoco import HEAD_GROUP, add_human, body_name, pose_human
+from adamo.runtime.human.skin_mujoco import add_human, body_name, pose_human
+from adamo.runtime.rendering import SceneRenderer
 
 CLOTHES = ("top", "collar", "trousers", "shoes")
 
@@ -189,18 +192,16 @@ def test_in_mujoco_a_person_is_drawn_where_it_stands():
     add_human(spec, load_figure())
     model = spec.compile()
     data = mujoco.MjData(model)
-    option = mujoco.MjvOption()
-    camera = mujoco.MjvCamera()
-    camera.lookat[:], camera.distance, camera.azimuth, camera.elevation = (0, 0, 0.9), 3.0, 180, 0
+    renderer = SceneRenderer(model, np.empty(0, np.int16))
+    camera = Camera(Vec3(3.0, 0.0, 0.9), math.pi, 0.0, math.radians(45), 240, 320)
 
-    def drawn(shift_m=(0.0, 0.0, 0.0)):
+    def drawn(shift=(0.0, 0.0, 0.0), *, head=True):
         places, rotations = joint_frames(Pose())
-        pose_human(model, data, places + np.array(shift_m), rotations)
-        mujoco.mj_kinematics(model, data)
-        renderer.update_scene(data, camera, scene_option=option)
-        return renderer.render().astype(int).max(axis=2) > 20
+        pose_human(model, data, places + np.array(shift), rotations)
+        mujoco.mj_forward(model, data)
+        return renderer.color(data, camera, head=head).astype(int).max(axis=2) > 20
 
-    with mujoco.Renderer(model, 320, 240) as renderer:
+    try:
         body = drawn()
         rows = np.flatnonzero(body.any(axis=1))
         assert body.mean() > 0.06
@@ -208,9 +209,10 @@ def test_in_mujoco_a_person_is_drawn_where_it_stands():
         # Half a metre to its left is to the right in the picture.
         moved = drawn((0.0, 0.5, 0.0))
         assert np.nonzero(moved)[1].mean() - np.nonzero(body)[1].mean() > 30
-        option.skingroup[HEAD_GROUP] = 0
-        headless = drawn()
+        headless = drawn(head=False)
         assert np.flatnonzero(headless.any(axis=1))[0] > rows[0] + 10
+    finally:
+        renderer.close()
 
 
 def test_posing_writes_each_joint_by_name():

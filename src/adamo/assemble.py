@@ -47,15 +47,20 @@ _REPLAY = "replay:"
 _E = TypeVar("_E", Labeling, TextForm)
 
 
-def create_engine(scene: str = "s1") -> Engine:
+def create_engine(scene: str = "s1", figure: str = "mara") -> Engine:
     """The built-in engine with a scene.
+
+    Args:
+        scene: Built-in scene or path of a scene file.
+        figure: Who the virtual human is: mara, jonas, amina or ken.
 
     Raises:
         SceneError: The scene is unknown or wrong.
+        ConfigError: No figure has this name.
     """
     from adamo.runtime.builtin import BuiltinEngine
 
-    return BuiltinEngine(scene)
+    return BuiltinEngine(scene, figure)
 
 
 def run_episode(
@@ -63,6 +68,7 @@ def run_episode(
     *,
     task: str | None = None,
     scene: str = "s1",
+    figure: str = "mara",
     labeling: str = "sem",
     model: str | Model = "baseline",
     seed: int = 0,
@@ -83,6 +89,7 @@ def run_episode(
         instruction: What the agent is told; the task's prompt if left out.
         task: Id of a benchmark task ("T1" to "T15"), whose checker then scores the episode.
         scene: Built-in scene or path of a scene file.
+        figure: Who the virtual human is: mara, jonas, amina or ken.
         labeling: "sem" or "opaq".
         model: URI ("baseline", "scripted:FILE.json", "replay:RUN_DIR", "openai:NAME",
             "openai:NAME@URL", ...) or an own `Model`.
@@ -112,6 +119,7 @@ def run_episode(
         instruction=_instruction(instruction, task),
         task=None if task is None else find_task(task).id,
         scene=scene,
+        figure=figure,
         labeling=_choice(Labeling, labeling, "labeling"),
         model=model if isinstance(model, str) else model.name,
         seed=seed,
@@ -125,7 +133,7 @@ def run_episode(
     player = _model(model) if isinstance(model, str) else model
     folder = None if out is None else Path(out)
     writer = None if folder is None else TrajectoryWriter(folder)
-    world = engine or create_engine(config.scene)
+    world = engine or create_engine(config.scene, config.figure)
     try:
         world.reset(config.seed)
         manifest = _manifest(config, player, world)
@@ -235,7 +243,7 @@ def replay_episode(folder: str | Path, start: int = 0) -> ReplayReport:
     """
     path = Path(folder)
     manifest, recorded = read_manifest(path), read_trajectory(path)
-    engine = create_engine(manifest.config.scene)
+    engine = create_engine(manifest.config.scene, manifest.config.figure)
     engine.reset(manifest.config.seed)
     try:
         return replay(_server(manifest.config, engine, PAPER_TOOLS), recorded, start)
@@ -273,7 +281,7 @@ def resume_episode(
     ]
     player = Resumed(said, model or _model(manifest.config.model, answered=len(said)))
     writer = TrajectoryWriter(path, known=len(recorded.events))
-    engine = create_engine(manifest.config.scene)
+    engine = create_engine(manifest.config.scene, manifest.config.figure)
     try:
         engine.reset(manifest.config.seed)
         return _play(manifest, player, engine, (writer, path), tools, observers)

@@ -37,6 +37,8 @@ class EpisodeConfig:
     """Id of the benchmark task that the instruction comes from; decides the checker."""
     scene: str = "s1"
     """Built-in scene or path of a scene file."""
+    figure: str = "mara"
+    """Who the virtual human is; seen in frames where the body is in view."""
     labeling: Labeling = Labeling.SEM
     model: str = "baseline"
     """Model URI."""

@@ -26,6 +26,7 @@ def run(
     ] = None,
     task: Annotated[str | None, typer.Option(help="A benchmark task instead: T1 to T15.")] = None,
     scene: Annotated[str, typer.Option(help="Built-in scene or scene file.")] = "s1",
+    figure: Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")] = "mara",
     labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
     model: Annotated[
         str,
@@ -62,6 +63,7 @@ def run(
         out=out,
         task=task,
         scene=scene,
+        figure=figure,
         labeling=labeling,
         model=model,
         seed=seed,
@@ -130,8 +132,8 @@ def doctor(json: Json = False) -> None:
     examine(as_json=json)
 
 
-@app.command()
-def figure(
+@app.command("figure")
+def export_figure(
     file: Annotated[Path, typer.Argument(help="FILE.glb to write.")],
     who: Annotated[str, typer.Option(help="mara, jonas, amina or ken.")] = "mara",
 ) -> None:

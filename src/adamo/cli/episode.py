@@ -42,7 +42,7 @@ def run_and_show(
         observers: list[Observer] = [] if as_json else [Progress(Console())]
         limits = Limits(max_steps=max_steps)
         if video is not None:
-            settings["engine"] = stack.enter_context(filming(video, settings["scene"], observers))
+            settings["engine"] = stack.enter_context(filming(video, settings, observers))
             # Drawing the film takes minutes that are not the agent's.
             limits = replace(limits, max_seconds=1e9)
         result = run_episode(
@@ -59,12 +59,12 @@ def run_and_show(
 
 
 @contextmanager
-def filming(path: Path, scene: str, observers: list[Observer]) -> Iterator[Engine]:
+def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> Iterator[Engine]:
     """An engine whose episode is filmed; the film is finished at the end."""
     from adamo.adapters.video import VideoRecorder
     from adamo.runtime.builtin import BuiltinEngine
 
-    engine = BuiltinEngine(scene)
+    engine = BuiltinEngine(settings["scene"], settings["figure"])
     recorder = VideoRecorder(path, engine)
     observers.append(recorder)
     try:

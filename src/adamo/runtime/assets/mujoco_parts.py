@@ -83,7 +83,7 @@ def _add_visual(spec: mujoco.MjSpec, body: mujoco.MjsBody, part: Part, name: str
     # Thin and open surfaces have no volume; a shell's inertia always exists. MuJoCo moves the mesh
     # to its principal axes and the geom back, so the vertices stay where they were.
     mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
-    _add_material(spec, part.material, name)
+    add_material(spec, part.material, name)
     body.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_MESH,
@@ -111,7 +111,8 @@ def _back_to_front(part: Part) -> NDArray[np.int32]:
     return part.faces[np.argsort(outward > 0, kind="stable")]
 
 
-def _add_material(spec: mujoco.MjSpec, material: Material, name: str) -> None:
+def add_material(spec: mujoco.MjSpec, material: Material, name: str) -> None:
+    """Add a material, with its texture if it has one, under a name that is unique in the model."""
     import mujoco
 
     made = spec.add_material(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from adamo.geometry import Array
-from adamo.runtime.assets.asset import Material
+from adamo.runtime.assets.mujoco_parts import add_material
 from adamo.runtime.human.looks import HEAD_GARMENTS, Figure, Garment
 from adamo.runtime.human.skeleton import JOINTS, REST
 
@@ -60,7 +60,7 @@ def pose_human(model: mujoco.MjModel, data: mujoco.MjData, places: Array, rotati
 
 def _add_skin(spec: mujoco.MjSpec, garment: Garment) -> None:
     name = f"human_{garment.name}"
-    _add_material(spec, garment.material, name)
+    add_material(spec, garment.material, name)
     bones = [j for j in range(len(JOINTS)) if (garment.weights[garment.bone_ids == j] > 0).any()]
     held = [np.nonzero((garment.bone_ids == j) & (garment.weights > 0)) for j in bones]
     spec.add_skin(
@@ -76,27 +76,3 @@ def _add_skin(spec: mujoco.MjSpec, garment: Garment) -> None:
         vertid=[rows.tolist() for rows, _ in held],
         vertweight=[garment.weights[rows, slots].tolist() for rows, slots in held],
     )
-
-
-def _add_material(spec: mujoco.MjSpec, material: Material, name: str) -> None:
-    import mujoco
-
-    made = spec.add_material(
-        name=name,
-        rgba=material.rgba,
-        specular=material.specular,
-        shininess=material.shininess,
-    )
-    if material.texture is None:
-        return
-    height, width, channels = material.texture.shape
-    texture = spec.add_texture(
-        name=name,
-        type=mujoco.mjtTexture.mjTEXTURE_2D,
-        width=width,
-        height=height,
-        nchannel=channels,
-    )
-    # MuJoCo wants the bottom row first.
-    texture.data = material.texture[::-1].tobytes()
-    made.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
