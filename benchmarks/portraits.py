@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -95,6 +96,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--shots", nargs="*", default=list(SHOTS), help="which views")
     parser.add_argument("--out", type=Path, required=True, help="folder for the pictures")
     options = parser.parse_args(arguments)
+    # Read when MuJoCo is imported, which happens below.
+    os.environ.setdefault("MUJOCO_GL", "egl")
     options.out.mkdir(parents=True, exist_ok=True)
     for name in options.names or VARIANTS:
         pictures = render(name, options.shots)

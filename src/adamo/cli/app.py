@@ -15,6 +15,8 @@ app = typer.Typer(
 )
 tasks_app = typer.Typer(help="The benchmark's tasks.", invoke_without_command=True)
 app.add_typer(tasks_app, name="tasks")
+scenes_app = typer.Typer(help="The scenes, built-in and own.", invoke_without_command=True)
+app.add_typer(scenes_app, name="scenes")
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 
@@ -116,12 +118,40 @@ def tasks_verify(
     verify(scene, as_json=json)
 
 
-@app.command()
-def scenes(json: Json = False) -> None:
+@scenes_app.callback()
+def scenes(context: typer.Context, json: Json = False) -> None:
     """List the scenes that come with the package."""
-    from adamo.cli.tasks import list_scenes
+    if context.invoked_subcommand is None:
+        from adamo.cli.scenes import list_scenes
 
-    list_scenes(as_json=json)
+        list_scenes(as_json=json)
+
+
+@scenes_app.command("check")
+def scenes_check(
+    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the pictures; scene-NAME by default.")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Say what is wrong with a scene, and draw it from above and from the start."""
+    from adamo.cli.scenes import check
+
+    check(file, out, as_json=json)
+
+
+@scenes_app.command("show")
+def scenes_show(
+    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the pictures; scene-NAME by default.")
+    ] = None,
+) -> None:
+    """Draw a scene from above, from the start and from each corner."""
+    from adamo.cli.scenes import show
+
+    show(file, out)
 
 
 @app.command()

@@ -1,4 +1,4 @@
-"""`adamo tasks`, `adamo tasks verify` and `adamo scenes`."""
+"""`adamo tasks` and `adamo tasks verify`."""
 
 from __future__ import annotations
 
@@ -69,33 +69,3 @@ def verify(scene: str | None, *, as_json: bool) -> None:
         typer.echo(json.dumps({"tasks": [asdict(row) for row in rows]}))
     if not all(row.is_sound for row in rows):
         raise typer.Exit(1)
-
-
-def list_scenes(*, as_json: bool) -> None:
-    """Print the scenes."""
-    from adamo.runtime.scenes import load_scene, scene_names
-
-    found = [load_scene(name) for name in scene_names()]
-    if as_json:
-        rows = [
-            {
-                "name": scene.name,
-                "title": scene.title,
-                "objects": len(scene.objects),
-                "furniture": [piece.name for piece in scene.furniture],
-                "areas": [area.name for area in scene.areas],
-            }
-            for scene in found
-        ]
-        typer.echo(json.dumps({"scenes": rows}))
-        return
-    table = Table("scene", "title", "objects", "furniture", "areas")
-    for scene in found:
-        table.add_row(
-            scene.name,
-            scene.title,
-            str(len(scene.objects)),
-            ", ".join(piece.name for piece in scene.furniture),
-            ", ".join(area.name for area in scene.areas),
-        )
-    Console().print(table)

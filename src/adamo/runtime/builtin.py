@@ -125,6 +125,11 @@ class BuiltinEngine:
         return self.stage.view(self._body, camera, from_the_eyes=False)
 
     @property
+    def world(self) -> World:
+        """The compiled scene: objects, surfaces, solids."""
+        return self._world
+
+    @property
     def data(self) -> mujoco.MjData:
         """The MuJoCo state, for measuring and for own views."""
         return self._world.data
@@ -157,7 +162,7 @@ class BuiltinEngine:
     def walk_to(self, point: Vec3) -> BodyReport:
         """Walk to the reachable place that is nearest to a point."""
         start = self._body.position
-        path = self._floor().ways_from(start).to_nearest(point)
+        path = self.floor().ways_from(start).to_nearest(point)
         if not self._walk(path):
             return self._cancelled(start)
         walked = path.length_m
@@ -170,7 +175,7 @@ class BuiltinEngine:
         if self._body.held is not None:
             return BodyReport(Outcome.REFUSED, Code.HAND_FULL)
         start, target = self._body.position, self._world.box(object_id).center
-        path = self._way_to(target, BODY_RADIUS_M if target.z < _OVERHEAD_M else 0.0)
+        path = self.way_to(target, BODY_RADIUS_M if target.z < _OVERHEAD_M else 0.0)
         if path is None:
             return self._unreachable(target)
         if not self._walk(path):
@@ -228,7 +233,8 @@ class BuiltinEngine:
     def _obstacles(self, held: int) -> list[Solid]:
         return [*self._world.solids, *self._solids_on(held)]
 
-    def _floor(self) -> FloorMap:
+    def floor(self) -> FloorMap:
+        """Where the body can stand now."""
         low = [s for s in self._solids_on(self._body.held) if s.z_min < 0.3]
         return FloorMap(self._info, [*self._world.solids, *low])
 
@@ -242,13 +248,13 @@ class BuiltinEngine:
                 return True
         return False
 
-    def _way_to(self, target: Vec3, keep_off_m: float) -> Path | None:
+    def way_to(self, target: Vec3, keep_off_m: float) -> Path | None:
         """The shortest way to a place from which a target can be handled; stay if this is one."""
         here = self._body.position
         distance = here.horizontal_distance(target)
         if keep_off_m <= distance <= REACH_M and self._can_reach(here, target):
             return Path((here,))
-        ways = self._floor().ways_from(here)
+        ways = self.floor().ways_from(here)
         return ways.to_standing_place(
             target, REACH_M - _REACH_MARGIN_M, keep_off_m, lambda p: self._can_reach(p, target)
         )
@@ -257,7 +263,7 @@ class BuiltinEngine:
         for count, spot in enumerate(spread(spots)):
             if count >= _MAX_SPOT_CHECKS:
                 return None
-            path = self._way_to(spot.center, BODY_RADIUS_M + radius_m + 0.01)
+            path = self.way_to(spot.center, BODY_RADIUS_M + radius_m + 0.01)
             if path is not None:
                 return spot, path
         return None
@@ -275,7 +281,7 @@ class BuiltinEngine:
 
     def _unreachable(self, target: Vec3) -> BodyReport:
         """A refusal that names the nearest place that could be walked to."""
-        nearest = self._floor().ways_from(self._body.position).to_nearest(target).end
+        nearest = self.floor().ways_from(self._body.position).to_nearest(target).end
         return BodyReport(Outcome.REFUSED, Code.UNREACHABLE, nearest)
 
     def _cancelled(self, start: Vec3) -> BodyReport:

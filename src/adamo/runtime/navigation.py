@@ -145,6 +145,10 @@ class Ways:
     before: NDArray[np.int32]
     """(cells,) predecessor of each cell on its shortest way."""
 
+    def places(self) -> Array:
+        """(N, 2) all places that can be reached, on the grid, metres."""
+        return np.asarray(self.floor._centres[np.isfinite(self.lengths_m)])
+
     def to_nearest(self, target: Vec3) -> Path:
         """The way to the reachable place nearest to a target: the very point if one can stand."""
         centres = self.floor._centres

@@ -115,7 +115,7 @@ def build_world(scene: Scene, figure: Figure) -> World:
         if not asset.colliders:
             _cast_no_shadow(body)
         surfaces += _surfaces(piece, asset)
-        solids += [_solid(c, piece.position, yaw) for c in asset.colliders]
+        solids += furniture_solids(piece, asset)
     assets = {item.id: load_asset(item.asset) for item in scene.objects}
     for item in scene.objects:
         _add_object(spec, item, assets[item.id], surfaces)
@@ -207,6 +207,12 @@ def _surfaces(piece: Furniture, asset: Asset) -> list[WorldSurface]:
         name = f"{piece.name}/{surface.name}" if several else piece.name
         found.append(WorldSurface(name, Vec3.of(center), *surface.half_size, yaw))
     return found
+
+
+def furniture_solids(piece: Furniture, asset: Asset) -> list[Solid]:
+    """What a piece of furniture occupies, collider by collider."""
+    yaw = math.radians(piece.yaw_deg)
+    return [_solid(collider, piece.position, yaw) for collider in asset.colliders]
 
 
 def _solid(collider: Collider, position: tuple[float, float], yaw_rad: float) -> Solid:
