@@ -154,9 +154,14 @@ def action_name(action_type: type) -> str:
 
 
 @cache
+def _codec(action_type: type) -> TypeAdapter[Any]:
+    return TypeAdapter(action_type)
+
+
+@cache
 def tool_schema(action_type: type) -> ToolSchema:
     """Generate the tool schema of an action from its dataclass."""
-    schema = TypeAdapter(action_type).json_schema()
+    schema = _codec(action_type).json_schema()
     schema.pop("title", None)
     schema.pop("description", None)
     for field in schema.get("properties", {}).values():
@@ -191,7 +196,7 @@ def parse(name: str, arguments: Mapping[str, Any] | None, actions: Iterable[type
             Code.BAD_ARGUMENT, f"the arguments are not a JSON object. Usage: {name}({signature})."
         )
     try:
-        return TypeAdapter(known[name]).validate_python(dict(arguments))
+        return _codec(known[name]).validate_python(dict(arguments))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"]) or "arguments"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
@@ -113,7 +114,7 @@ class LocalActionServer:
     def save(self) -> str:
         """World, body and what was seen so far, as text."""
         saved = _Saved(self.engine.snapshot(), tuple(sorted(self._seen)))
-        return TypeAdapter(_Saved).dump_json(saved).decode()
+        return _codec().dump_json(saved).decode()
 
     def load(self, saved: str) -> None:
         """Go back to what `save` gave.
@@ -122,7 +123,7 @@ class LocalActionServer:
             EngineError: The text is damaged or belongs to another scene.
         """
         try:
-            kept = TypeAdapter(_Saved).validate_json(saved)
+            kept = _codec().validate_json(saved)
         except ValidationError as error:
             raise EngineError(f"The saved state is damaged: {error.errors()[0]['msg']}") from None
         self.engine.restore(kept.engine)
@@ -137,3 +138,8 @@ class _Saved:
 
     engine: bytes
     seen: tuple[int, ...]
+
+
+@cache
+def _codec() -> TypeAdapter[_Saved]:
+    return TypeAdapter(_Saved)

@@ -6,6 +6,7 @@ import math
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,16 +50,21 @@ class _Snapshot:
     said: tuple[str, ...]
 
     def pack(self) -> bytes:
-        return zlib.compress(TypeAdapter(_Snapshot).dump_json(self))
+        return zlib.compress(_codec().dump_json(self))
 
     @staticmethod
     def unpack(data: bytes) -> _Snapshot:
         try:
             # A bound on the size: snapshots may come from elsewhere.
             text = zlib.decompressobj().decompress(data, _MAX_SNAPSHOT_BYTES)
-            return TypeAdapter(_Snapshot).validate_json(text)
+            return _codec().validate_json(text)
         except (zlib.error, ValidationError) as error:
             raise EngineError(f"The snapshot is damaged: {error}") from None
+
+
+@cache
+def _codec() -> TypeAdapter[_Snapshot]:
+    return TypeAdapter(_Snapshot)
 
 
 class BuiltinEngine:
@@ -152,7 +158,8 @@ class BuiltinEngine:
     def look_at(self, point: Vec3) -> BodyReport:
         """Turn body and gaze to a point."""
         body, exact = self._body.facing(point)
-        self._move(self.stage.perform(look_motion(self._body, body, self._held_size())))
+        motion = partial(look_motion, self._body, body, self._held_size())
+        self._move(self.stage.perform(body, motion))
         if self._body != body:
             return BodyReport(Outcome.CORRECTED, Code.CANCELLED, self._body.gaze)
         if exact:
@@ -183,8 +190,8 @@ class BuiltinEngine:
         facing, _ = self._body.facing(target)
         holding = replace(facing, held=object_id)
         size = self._world.objects[object_id].size
-        motion = pick_motion(self._body, holding, target, size)
-        self._move(self.stage.perform(motion, object_id))
+        motion = partial(pick_motion, self._body, holding, target, size)
+        self._move(self.stage.perform(holding, motion, object_id))
         if self._body.held is None:
             return self._cancelled(start)
         physics.settle(self._world, object_id)
@@ -207,8 +214,9 @@ class BuiltinEngine:
         if not self._walk(path):
             return self._cancelled(start)
         facing, _ = self._body.facing(spot.center)
-        motion = drop_motion(self._body, replace(facing, held=None), spot.center, self._held_size())
-        self._move(self.stage.perform(motion, held, spot.center))
+        free = replace(facing, held=None)
+        motion = partial(drop_motion, self._body, free, spot.center, self._held_size())
+        self._move(self.stage.perform(free, motion, held, spot.center))
         if self._body.held is not None:
             return self._cancelled(start)
         physics.place(self._world, held, spot.center + Vec3(0.0, 0.0, 0.001))
@@ -275,8 +283,8 @@ class BuiltinEngine:
         before, end = path.points[-2], path.points[-1]
         heading = math.atan2(end.y - before.y, end.x - before.x)
         there = self._body.walked(end, heading)
-        motion = walk_motion(self._body, path, there, self._held_size())
-        self._move(self.stage.perform(motion, self._body.held))
+        motion = partial(walk_motion, self._body, path, there, self._held_size())
+        self._move(self.stage.perform(there, motion, self._body.held))
         return self._body == there
 
     def _unreachable(self, target: Vec3) -> BodyReport:

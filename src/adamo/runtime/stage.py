@@ -96,11 +96,18 @@ class Stage:
         """Draw the next view even if nothing changed."""
         self._last = None
 
-    def perform(self, motion: Motion, thing: int | None = None, rest: Vec3 | None = None) -> Body:
+    def perform(
+        self,
+        end: Body,
+        make: Callable[[], Motion],
+        thing: int | None = None,
+        rest: Vec3 | None = None,
+    ) -> Body:
         """Let an action be watched, if somebody watches.
 
         Args:
-            motion: How the body moves.
+            end: The body when it is done.
+            make: Makes the motion to that end; costly, so it is asked only if it is watched.
             thing: What is taken, put down or carried meanwhile.
             rest: Where it is put down.
 
@@ -108,7 +115,8 @@ class Stage:
             The body at the end of the motion, or where the watcher stopped it.
         """
         if self.watcher is None:
-            return motion.end
+            return end
+        motion = make()
         data = self._world.data
         kept = data.qpos.copy()
         moments = np.arange(0.0, motion.duration_s, 1.0 / FRAMES_PER_S)
@@ -124,7 +132,7 @@ class Stage:
         finally:
             self._moment = None
             data.qpos[:] = kept
-        return motion.end
+        return end
 
     def _pose(self, shown: BodyFrame) -> None:
         import mujoco

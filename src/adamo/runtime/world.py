@@ -150,10 +150,13 @@ def _cast_no_shadow(body: mujoco.MjsBody) -> None:
 
 def load_room(scene: Scene) -> Asset:
     """The room's shell for a scene."""
+    from adamo.runtime.assets.bake import load_built
     from adamo.runtime.assets.room import room
 
     shell = scene.room
-    return room(shell.x_min, shell.x_max, shell.y_min, shell.y_max, shell.height_m)
+    extent = (shell.x_min, shell.x_max, shell.y_min, shell.y_max, shell.height_m)
+    name = "_".join(["room", *(f"{value:.4f}" for value in extent)])
+    return load_built(name, lambda: room(*extent))
 
 
 def object_body(object_id: int) -> str:

@@ -13,6 +13,7 @@ import os
 import tempfile
 import zipfile
 import zlib
+from collections.abc import Callable
 from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
@@ -51,10 +52,20 @@ def load_asset(name: str) -> Asset:
     Raises:
         KeyError: If no asset has this name.
     """
+    return load_built(name, lambda: catalog.build(name))
+
+
+def load_built(name: str, build: Callable[[], Asset]) -> Asset:
+    """Return what a builder made before, or build and cache it.
+
+    Args:
+        name: Names the asset and everything that the builder depends on; a file name.
+        build: Makes it.
+    """
     path = cache_file(name)
     with contextlib.suppress(*_DAMAGE):
         return _read(path)
-    asset = catalog.build(name)
+    asset = build()
     with contextlib.suppress(OSError):
         _write(asset, path)
     return asset
