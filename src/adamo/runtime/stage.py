@@ -6,7 +6,8 @@ never changes how an action ends.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from adamo.geometry import Camera, Vec3
 from adamo.observation import Percept, SeenObject
 from adamo.runtime import physics
 from adamo.runtime.embodiment import Body
-from adamo.runtime.human.motion import BodyFrame, Motion
+from adamo.runtime.human.motion import BodyFrame, Motion, idle
 from adamo.runtime.human.postures import at_rest
 from adamo.runtime.human.skin_mujoco import pose_human
 from adamo.runtime.rendering import SceneRenderer
@@ -91,6 +92,15 @@ class Stage:
     def shown(self, body: Body) -> BodyFrame:
         """What is to be seen now: a moment of an action, or the figure between actions."""
         return self._moment or self.standing(body)
+
+    @contextmanager
+    def idling(self, body: Body, seconds: float) -> Iterator[None]:
+        """Show the figure some seconds into standing still: it breathes and blinks."""
+        self._moment = idle(body, seconds, self._size(body.held))
+        try:
+            yield
+        finally:
+            self._moment = None
 
     def forget(self) -> None:
         """Draw the next view even if nothing changed."""
