@@ -21,7 +21,7 @@ from adamo.runtime import physics
 from adamo.runtime.embodiment import REACH_M, REACH_TOP_M, Body
 from adamo.runtime.human.looks import VARIANTS, load_figure
 from adamo.runtime.human.motion import drop_motion, look_motion, pick_motion, walk_motion
-from adamo.runtime.navigation import BODY_RADIUS_M, FloorMap, Path
+from adamo.runtime.navigation import BODY_RADIUS_M, FloorMap, Path, Ways
 from adamo.runtime.placement import Spot, free_spots, spread
 from adamo.runtime.scenes.scene import Scene, load_scene
 from adamo.runtime.solids import Solid
@@ -86,6 +86,7 @@ class BuiltinEngine:
         self._world: World = build_world(self._scene, load_figure(figure))
         self.stage = Stage(self._world)
         """Draws the world, and lets actions be watched."""
+        self._known_ways: tuple[object, Ways] | None = None
         self._said: list[str] = []
         physics.settle(self._world, None)
         self._settled = self._world.data.qpos.copy()
@@ -169,7 +170,7 @@ class BuiltinEngine:
     def walk_to(self, point: Vec3) -> BodyReport:
         """Walk to the reachable place that is nearest to a point."""
         start = self._body.position
-        path = self.floor().ways_from(start).to_nearest(point)
+        path = self._ways().to_nearest(point)
         if not self._walk(path):
             return self._cancelled(start)
         walked = path.length_m
@@ -246,6 +247,13 @@ class BuiltinEngine:
         low = [s for s in self._solids_on(self._body.held) if s.z_min < 0.3]
         return FloorMap(self._info, [*self._world.solids, *low])
 
+    def _ways(self) -> Ways:
+        """All ways from where the body stands; kept until the world changes."""
+        key = (self._world.data.qpos.tobytes(), self._body.position, self._body.held)
+        if self._known_ways is None or self._known_ways[0] != key:
+            self._known_ways = (key, self.floor().ways_from(self._body.position))
+        return self._known_ways[1]
+
     def _can_reach(self, place: Vec3, target: Vec3) -> bool:
         """Whether no furniture is between the body at a place and a target."""
         if target.z > REACH_TOP_M:
@@ -262,7 +270,7 @@ class BuiltinEngine:
         distance = here.horizontal_distance(target)
         if keep_off_m <= distance <= REACH_M and self._can_reach(here, target):
             return Path((here,))
-        ways = self.floor().ways_from(here)
+        ways = self._ways()
         return ways.to_standing_place(
             target, REACH_M - _REACH_MARGIN_M, keep_off_m, lambda p: self._can_reach(p, target)
         )
@@ -289,7 +297,7 @@ class BuiltinEngine:
 
     def _unreachable(self, target: Vec3) -> BodyReport:
         """A refusal that names the nearest place that could be walked to."""
-        nearest = self.floor().ways_from(self._body.position).to_nearest(target).end
+        nearest = self._ways().to_nearest(target).end
         return BodyReport(Outcome.REFUSED, Code.UNREACHABLE, nearest)
 
     def _cancelled(self, start: Vec3) -> BodyReport:
