@@ -230,7 +230,6 @@ def test_nothing_is_done_at_the_start(engine: BuiltinEngine) -> None:
             assert not condition.satisfied(state), f"{task.id}: {condition}"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("labeling", [Labeling.SEM, Labeling.OPAQ])
 def test_every_task_can_be_done(engine: BuiltinEngine, labeling: Labeling) -> None:
     unsound = [v for v in verify_tasks(engine, labeling) if not v.is_sound]
