@@ -39,7 +39,7 @@ def examine(*, as_json: bool) -> None:
         if not as_json:
             mark = "[green]ok  [/green]" if finding.ok else "[red]FAIL[/red]"
             console.print(f"{mark} [bold]{finding.check}[/bold]", end=" ")
-            console.print(finding.found, markup=False, highlight=False)
+            console.print(finding.found, markup=False, highlight=False, soft_wrap=True)
             if finding.fix:
                 console.print(f"     fix: {finding.fix}", markup=False, highlight=False)
     if as_json:
@@ -98,6 +98,7 @@ def _test_frame() -> str:
 
     engine = BuiltinEngine("s1")
     engine.capture(640, 360)
+    engine.stage.forget()
     started = time.perf_counter()
     percept = engine.capture(640, 360)
     seconds = time.perf_counter() - started

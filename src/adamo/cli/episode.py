@@ -106,7 +106,7 @@ def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
             if not report.frames_differ
             else (f"{report.frames_differ} frames differ in bytes (another machine or driver)")
         )
-        typer.echo(f"Same: {report.steps} actions, every state hash equal; {frames}.")
+        typer.echo(f"Same: every state hash equal in {report.steps} steps; {frames}.")
     else:
         for line in report.mismatches:
             typer.echo(f"Different: {line}")
