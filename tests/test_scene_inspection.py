@@ -7,14 +7,18 @@ import subprocess
 import sys
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from adamo.runtime.builtin import BuiltinEngine
 from adamo.runtime.scenes import load_scene, parse_scene
-from adamo.runtime.scenes.inspection import Severity, inspect_scene
+from adamo.runtime.scenes.arrangement import inspect_arrangement
+from adamo.runtime.scenes.finding import Severity
+from adamo.runtime.scenes.inspection import inspect_scene
 
 S1 = (resources.files("adamo.runtime.scenes") / "s1_tabletop.toml").read_text(encoding="utf-8")
+HEAD = S1[: S1.index("[[objects]]")]
 
 
 def findings(text: str) -> list[tuple[Severity, str, str]]:
@@ -56,19 +60,64 @@ def test_what_is_wrong_is_found(before: str, after: str, where: str, part: str) 
     assert any(place.startswith(where) and part in problem for _, place, problem in found), found
 
 
-def test_the_command_prints_findings_and_writes_pictures(tmp_path: Path) -> None:
-    path = tmp_path / "mine.toml"
-    path.write_text(S1.replace("[0.326, -0.603]", "[0.076, -0.853]", 1))
+@pytest.mark.parametrize("asset", ["tape", "key"])
+def test_a_pile_of_objects_is_told_and_never_simulated(asset: str) -> None:
+    items = (
+        f'[[objects]]\nid = {i}\nasset = "{asset}"\non = "table"\nposition = [0.0, -1.0]\n'
+        for i in range(200)
+    )
+    found = inspect_arrangement(parse_scene(HEAD + "\n".join(items), "pile.toml"))
+    assert all(finding.blocks and "overlap" in finding.problem for finding in found[:-1])
+    assert found[-1].problem.startswith("19880 more")
+    assert len(found) == 21
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "where", "part", "blocks"),
+    [
+        ("[0.0, -1.0, 0.8]", "[1.8, 1.6, 3.0]", "lights[1].target", "at itself", True),
+        ('on = "table"', 'on = "table/top"', "objects[0].on", "nothing can lie on", True),
+        ("[0.326, -0.603]", "[0.430, -0.603]", "objects[18].position", "past the edge", False),
+    ],
+)
+def test_the_file_alone_tells(before: str, after: str, where: str, part: str, blocks: bool) -> None:
+    assert before in S1
+    (found,) = inspect_arrangement(parse_scene(S1.replace(before, after, 1), "mine.toml"))
+    assert (found.where, found.blocks) == (where, blocks)
+    assert part in found.problem
+
+
+def test_out_of_time_is_said(engine: BuiltinEngine) -> None:
+    (found,) = inspect_scene(load_scene("s1"), engine, time_limit_s=-1.0)
+    assert found.severity is Severity.WARNING
+    assert "out of time" in found.problem
+
+
+def check(path: Path) -> tuple[int, dict[str, Any]]:
     done = subprocess.run(
         [sys.executable, "-m", "adamo", "scenes", "check", str(path), "--json"],
         capture_output=True,
         text=True,
-        cwd=tmp_path,
+        cwd=path.parent,
         check=False,
     )
-    assert done.returncode == 1, done.stderr
-    found = json.loads(done.stdout)
-    assert found["ok"] is False
+    return done.returncode, json.loads(done.stdout)
+
+
+def test_the_command_prints_findings_and_writes_pictures(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(S1.replace("[0.326, -0.603]", "[0.076, -0.853]", 1))
+    code, found = check(path)
+    assert (code, found["ok"]) == (1, False)
     assert found["findings"][0]["severity"] == "error"
+    assert [Path(picture).name for picture in found["pictures"]] == ["top.png", "start.png"]
     for picture in found["pictures"]:
         assert (tmp_path / picture).read_bytes()[:4] == b"\x89PNG"
+
+
+def test_a_field_that_breaks_the_schema_is_a_finding(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(S1.replace("diffuse = 0.3", "diffuse = 7", 1))
+    code, found = check(path)
+    assert (code, found["scene"], found["pictures"]) == (1, "mine", [])
+    assert [finding["where"] for finding in found["findings"]] == ["lights[1].diffuse"]

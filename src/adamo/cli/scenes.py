@@ -5,13 +5,18 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
+from adamo.errors import SceneError
 from adamo.runtime.builtin import BuiltinEngine
 from adamo.runtime.scenes import Scene, load_scene, scene_names
+
+if TYPE_CHECKING:
+    from adamo.runtime.scenes.finding import SceneFinding
 
 
 def list_scenes(*, as_json: bool) -> None:
@@ -44,27 +49,55 @@ def list_scenes(*, as_json: bool) -> None:
 
 def check(file: str, out: Path | None, *, as_json: bool) -> None:
     """Look a scene over, with pictures; exit 1 if something is wrong with it."""
-    from adamo.runtime.scenes.inspection import Severity, inspect_scene
+    from adamo.runtime.scenes.finding import Severity
 
-    scene = load_scene(file)
-    engine = BuiltinEngine(scene)
-    findings = inspect_scene(scene, engine)
-    pictures = _draw(scene, engine, out or Path(f"scene-{scene.name}"), ("top", "start"))
-    engine.close()
+    name, findings, pictures = _inspected(file, out)
     ok = all(finding.severity is not Severity.ERROR for finding in findings)
     if as_json:
         rows = [asdict(finding) for finding in findings]
         paths = [str(path) for path in pictures]
-        found = {"scene": scene.name, "ok": ok, "findings": rows, "pictures": paths}
-        typer.echo(json.dumps(found))
+        typer.echo(json.dumps({"scene": name, "ok": ok, "findings": rows, "pictures": paths}))
     else:
         for finding in findings:
             typer.echo(f"{finding.severity}: {finding.where}: {finding.problem}; {finding.fix}")
-        typer.echo(f"{scene.name}: {'sound' if ok else 'not sound'}")
+        typer.echo(f"{name}: {'sound' if ok else 'not sound'}")
         for path in pictures:
             typer.echo(path)
     if not ok:
         raise typer.Exit(1)
+
+
+def _inspected(file: str, out: Path | None) -> tuple[str, tuple[SceneFinding, ...], list[Path]]:
+    """Name, findings and pictures; what cannot be simulated gets no pictures."""
+    from adamo.runtime.scenes.arrangement import inspect_arrangement
+    from adamo.runtime.scenes.inspection import inspect_scene, load_engine
+
+    try:
+        scene = load_scene(file)
+        findings = inspect_arrangement(scene)
+        if any(finding.blocks for finding in findings):
+            return scene.name, findings, []
+        engine = load_engine(scene)
+    except SceneError as fault:
+        if not Path(file).is_file():
+            raise
+        return Path(file).stem, (_as_finding(fault, file),), []
+    try:
+        folder = out or Path(f"scene-{scene.name}")
+        findings = inspect_scene(scene, engine)
+        return scene.name, findings, _draw(scene, engine, folder, ("top", "start"))
+    finally:
+        engine.close()
+
+
+def _as_finding(fault: SceneError, file: str) -> SceneFinding:
+    from adamo.runtime.scenes.finding import error
+
+    told = str(fault).removeprefix(f"{file}: ")
+    where, _, problem = told.partition(": ")
+    if not problem or " " in where:
+        where, problem = "file", told
+    return error(where, problem, "correct it in the file", blocks=True)
 
 
 def show(file: str, out: Path | None) -> None:
@@ -84,12 +117,13 @@ def _draw(
     from adamo.runtime.scenes.inspection import cameras
 
     folder.mkdir(parents=True, exist_ok=True)
-    views = {name: engine.view(camera).rgb for name, camera in cameras(scene, engine).items()}
-    views["start"] = engine.capture(1920, 1080).rgb
+    engine.reset(0)
+    chosen = cameras(scene, engine)
     written = []
-    for name, picture in views.items():
-        if names is None or name in names:
-            path = folder / f"{name}.png"
-            Image.fromarray(picture).save(path)
-            written.append(path)
+    for name in names or (*chosen, "start"):
+        outside = chosen.get(name)
+        view = engine.view(outside) if outside else engine.capture(1920, 1080)
+        path = folder / f"{name}.png"
+        Image.fromarray(view.rgb).save(path)
+        written.append(path)
     return written

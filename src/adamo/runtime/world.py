@@ -116,7 +116,7 @@ def build_world(scene: Scene, figure: Figure) -> World:
         add_asset(spec, body, asset, piece.name)
         if not asset.colliders:
             _cast_no_shadow(body)
-        surfaces += _surfaces(piece, asset)
+        surfaces += furniture_surfaces(piece, asset)
         solids += furniture_solids(piece, asset)
     assets = {item.id: load_asset(item.asset) for item in scene.objects}
     for item in scene.objects:
@@ -210,7 +210,8 @@ def _add_light(spec: mujoco.MjSpec, light: Light) -> None:
     )
 
 
-def _surfaces(piece: Furniture, asset: Asset) -> list[WorldSurface]:
+def furniture_surfaces(piece: Furniture, asset: Asset) -> list[WorldSurface]:
+    """What a piece of furniture carries things on, placed in the world."""
     yaw = math.radians(piece.yaw_deg)
     turn = Quaternion.from_yaw(yaw).matrix()
     found = []

@@ -8,108 +8,76 @@ pictures for each object that is not in the first view.
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import StrEnum
-from itertools import combinations
 
 import numpy as np
 
+from adamo.errors import SceneError
 from adamo.geometry import Array, Camera, Vec3
-from adamo.runtime.assets.bake import load_asset
 from adamo.runtime.builtin import BuiltinEngine
 from adamo.runtime.embodiment import EYE_HEIGHT_M, FOV_Y_RAD
-from adamo.runtime.scenes.scene import PlacedObject, Scene
-from adamo.runtime.solids import Solid, gaps
-from adamo.runtime.world import furniture_solids
+from adamo.runtime.scenes.arrangement import inspect_arrangement
+from adamo.runtime.scenes.finding import SceneFinding, error, warning
+from adamo.runtime.scenes.scene import Scene
 
-_OVERLAP_M = 0.02
 _STAYED_M = 0.02
 _UPRIGHT = 0.98
 _PICTURE = (640, 360)
 _PIXELS = 4
 """Least pixels of a visible object in such a small picture."""
 _VANTAGES = 12
-_TOP_FOV_RAD = math.radians(120)
+_ABOVE_M = 12.0
+_FARTHEST_M = 19.0
+"""What is farther from the camera is not drawn."""
+_LONGEST_PX, _SHORTEST_PX = 1600, 200
+_MARGIN = 1.08
 
 
-class Severity(StrEnum):
-    """How bad it is."""
+def load_engine(scene: Scene) -> BuiltinEngine:
+    """Settle a scene that may be wrong.
 
-    ERROR = "error"
-    WARNING = "warning"
+    Raises:
+        SceneError: The physics cannot take it.
+    """
+    import mujoco
 
-
-@dataclass(frozen=True, slots=True)
-class SceneFinding:
-    """One thing that is wrong."""
-
-    severity: Severity
-    where: str
-    """Field of the scene file."""
-    problem: str
-    fix: str
+    try:
+        return BuiltinEngine(scene)
+    except (mujoco.FatalError, ValueError) as fault:
+        reason = str(fault).partition("\n")[0]
+        raise SceneError(f"{scene.name}: the physics cannot take it: {reason}") from None
 
 
-def inspect_scene(scene: Scene, engine: BuiltinEngine) -> tuple[SceneFinding, ...]:
+def inspect_scene(
+    scene: Scene, engine: BuiltinEngine, time_limit_s: float = 60.0
+) -> tuple[SceneFinding, ...]:
     """Look a scene over.
 
     Args:
-        scene: What the file says.
+        scene: What the file says; nothing in it blocks the simulation.
         engine: The same scene, loaded; is reset.
+        time_limit_s: When the time is over, the other objects are left out, with a warning.
     """
+    until = time.monotonic() + time_limit_s
     engine.reset(0)
     return (
-        *_lights(scene),
-        *_furniture(scene),
-        *_objects(scene, engine),
+        *inspect_arrangement(scene),
+        *_rest(scene, engine),
         *_floor(scene, engine),
-        *_reach(scene, engine),
+        *_reach(scene, engine, until),
     )
 
 
-def _error(where: str, problem: str, fix: str) -> SceneFinding:
-    return SceneFinding(Severity.ERROR, where, problem, fix)
-
-
-def _lights(scene: Scene) -> Iterator[SceneFinding]:
-    shadows = sum(light.shadow for light in scene.lights)
-    if shadows > 1:
-        yield SceneFinding(
-            Severity.WARNING,
-            "lights",
-            f"{shadows} lights cast shadows, and each draws the whole scene again",
-            "leave shadow = true on one light",
-        )
-
-
-def _furniture(scene: Scene) -> Iterator[SceneFinding]:
-    solids = [furniture_solids(piece, load_asset(piece.asset)) for piece in scene.furniture]
-    for (i, first), (k, second) in combinations(enumerate(solids), 2):
-        if any(_overlap(a, b) for a in first for b in second):
-            names = f"{scene.furniture[i].name!r} and {scene.furniture[k].name!r}"
-            yield _error(f"furniture[{k}].position", f"{names} overlap", "move one of them")
-
-
-def _overlap(a: Solid, b: Solid) -> bool:
-    apart = gaps(np.array([[a.x, a.y]]), a, [b])[0]
-    return a.overlaps_height(b.z_min, b.z_max) and bool(apart < -_OVERLAP_M)
-
-
-def _objects(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
-    """Objects that are in each other, or do not stay where they were put."""
+def _rest(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
+    """Objects that do not stay where they were put."""
     state = engine.state()
-    solids = [_as_placed(item) for item in scene.objects]
-    for (i, a), (k, b) in combinations(enumerate(solids), 2):
-        if scene.objects[i].on == scene.objects[k].on and _overlap(a, b):
-            ids = f"{scene.objects[i].id} and {scene.objects[k].id}"
-            yield _error(f"objects[{k}].position", f"objects {ids} overlap", "move one of them")
     for i, item in enumerate(scene.objects):
         now = state.object(item.id)
         moved = now.box.center.horizontal_distance(Vec3(*item.position, 0.0))
         upright = now.box.orientation.matrix()[2, 2]
         if now.support != item.on or moved > _STAYED_M or upright < _UPRIGHT:
-            yield _error(
+            yield error(
                 f"objects[{i}].position",
                 f"object {item.id} does not stay on {item.on!r}: it ends on {now.support!r}, "
                 f"{moved:.2f} m away{'' if upright >= _UPRIGHT else ', tipped over'}",
@@ -117,26 +85,21 @@ def _objects(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
             )
 
 
-def _as_placed(item: PlacedObject) -> Solid:
-    x, y, z = load_asset(item.asset).size
-    return Solid(*item.position, x / 2, y / 2, math.radians(item.yaw_deg), 0.0, z)
-
-
 def _floor(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
     """Where the agent starts, and whether every area can be walked to."""
     start = Vec3(*scene.agent.position, 0.0)
     floor = engine.floor()
     if not floor.can_stand(start):
-        yield _error("agent.position", "the body does not fit there", "move it 0.3 m off furniture")
+        yield error("agent.position", "the body does not fit there", "move it 0.3 m off furniture")
         return
     places = floor.ways_from(start).places()
     for i, area in enumerate(scene.areas):
         inside = (places >= area.min).all(axis=1) & (places <= area.max).all(axis=1)
         if not inside.any():
-            yield _error(f"areas[{i}]", f"{area.name!r} cannot be walked to", "clear a way to it")
+            yield error(f"areas[{i}]", f"{area.name!r} cannot be walked to", "clear a way to it")
 
 
-def _reach(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
+def _reach(scene: Scene, engine: BuiltinEngine, until: float) -> Iterator[SceneFinding]:
     """Whether every object can be seen from somewhere, and taken."""
     start = engine.body().position
     if not engine.floor().can_stand(start):
@@ -144,15 +107,22 @@ def _reach(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
     places = engine.floor().ways_from(start).places()
     first_view = engine.capture(1920, 1080)
     for i, item in enumerate(scene.objects):
+        if time.monotonic() > until:
+            yield warning(
+                f"objects[{i}]",
+                "reach and sight of this and the following objects are not checked: out of time",
+                "make the scene smaller",
+            )
+            return
         target = engine.world.box(item.id).center
         if engine.way_to(target, 0.25) is None:
-            yield _error(
+            yield error(
                 f"objects[{i}].position",
                 f"object {item.id} cannot be reached from any place to stand",
                 "put it within 0.9 m of open floor and below 2.07 m",
             )
         if item.id not in first_view.objects and not _is_visible(engine, item.id, target, places):
-            yield _error(
+            yield error(
                 f"objects[{i}].position",
                 f"object {item.id} cannot be seen from the places tried",
                 "move it out from behind other things",
@@ -183,9 +153,7 @@ def cameras(scene: Scene, engine: BuiltinEngine) -> dict[str, Camera]:
     """Views that show a scene: from above, from the start, and from each corner."""
     room = scene.room
     middle = Vec3((room.x_min + room.x_max) / 2, (room.y_min + room.y_max) / 2, 0.0)
-    above = Vec3(middle.x, middle.y, room.height_m - 0.15)
-    size = (1600, 1200)
-    found = {"top": Camera(above, math.pi / 2, -math.pi / 2 + 1e-4, _TOP_FOV_RAD, *size)}
+    found = {"top": _top(scene, middle)}
     corners = [(x, y) for x in (room.x_min, room.x_max) for y in (room.y_min, room.y_max)]
     for number, (x, y) in enumerate(corners, start=1):
         inward = Vec3(x, y, 0.0) + (middle - Vec3(x, y, 0.0)) * 0.06
@@ -194,3 +162,15 @@ def cameras(scene: Scene, engine: BuiltinEngine) -> dict[str, Camera]:
         yaw = math.atan2(line.y, line.x)
         found[f"corner{number}"] = Camera(eyes, yaw, -0.25, math.radians(70), 1600, 900)
     return found
+
+
+def _top(scene: Scene, middle: Vec3) -> Camera:
+    """From far above: the ceiling is drawn from below only, so that one looks into the room."""
+    room = scene.room
+    height = _ABOVE_M if room.height_m < _ABOVE_M - 1.0 else min(room.height_m, _FARTHEST_M) - 0.15
+    sides = room.x_max - room.x_min, room.y_max - room.y_min
+    width, depth = (max(_SHORTEST_PX, round(_LONGEST_PX * side / max(sides))) for side in sides)
+    half = max(sides) / 2 * depth / _LONGEST_PX * _MARGIN
+    eyes = Vec3(middle.x, middle.y, height)
+    straight_down = -math.pi / 2 + 1e-4
+    return Camera(eyes, math.pi / 2, straight_down, 2 * math.atan2(half, height), width, depth)
