@@ -13,10 +13,13 @@ from adamo.engine import FLOOR, WorldState
 from adamo.errors import EngineError
 from adamo.geometry import Vec3
 from adamo.observation import NOTHING
+from adamo.runtime import physics
 from adamo.runtime.builtin import BuiltinEngine
 from adamo.runtime.embodiment import REACH_M
 from adamo.runtime.navigation import BODY_RADIUS_M
+from adamo.runtime.rendering import SceneRenderer
 from adamo.runtime.scenes import load_scene
+from adamo.runtime.soundness import Soundness
 
 PLATE, GLASS, KEY, TAPE, CUP, BOTTLE = 57, 37, 34, 4, 45, 36
 SMALL = (480, 270)
@@ -102,6 +105,83 @@ def test_the_held_object_goes_with_the_body(engine: BuiltinEngine) -> None:
     state = engine.state()
     assert place(state, CUP).horizontal_distance(state.body.position) < 0.6
     assert 0.8 < place(state, CUP).z < 1.3
+
+
+AT_THE_WALL = [
+    (Vec3(-2.75, -1.0, 0.0), Vec3(-3.0, -1.0, 1.4)),
+    (Vec3(2.75, 0.0, 0.0), Vec3(3.0, 0.0, 1.4)),
+    (Vec3(-1.0, 2.75, 0.0), Vec3(3.0, 2.75, 1.4)),
+    (Vec3(-2.75, -4.75, 0.0), Vec3(-3.0, -5.0, 1.0)),
+]
+"""Places to stand, and where to look from there: at a wall, along one, into a corner."""
+
+
+@pytest.mark.parametrize("object_id", [PLATE, BOTTLE, 50])
+def test_what_is_held_is_never_in_a_wall(engine: BuiltinEngine, object_id: int) -> None:
+    sound, room = Soundness(engine.world), engine.scene
+    engine.pick(object_id)
+    for place_to_stand, gaze in AT_THE_WALL:
+        assert engine.walk_to(place_to_stand).outcome is Outcome.DONE
+        engine.look_at(gaze)
+        state = engine.state()
+        corners = state.object(object_id).box.corners()
+        assert (corners[:, :2] > [room.x_min, room.y_min]).all()
+        assert (corners[:, :2] < [room.x_max, room.y_max]).all()
+        assert sound.state_faults(state) == []
+        # The hand went along, and the thing is still before the body.
+        hand = engine.stage.shown(engine.figure).hand
+        assert hand.distance(place(state, object_id)) < 1e-6
+        assert place(state, object_id).horizontal_distance(state.body.position) > 0.1
+        # It is a state like any other.
+        kept = engine.snapshot()
+        engine.restore(kept)
+        assert engine.state() == state
+
+
+def test_away_from_walls_things_are_held_at_arms_length(engine: BuiltinEngine) -> None:
+    """Drawn in at a wall, and out again as soon as there is room."""
+    engine.pick(PLATE)
+    engine.walk_to(Vec3(-2.0, -3.0, 0.0))
+    engine.look_at(Vec3(0.0, -3.0, 1.0))
+    before = engine.state()
+    engine.walk_to(Vec3(-2.75, -3.0, 0.0))
+    engine.look_at(Vec3(-3.0, -3.0, 1.0))
+    near = engine.state()
+    assert place(near, PLATE).horizontal_distance(near.body.position) < 0.3
+    engine.walk_to(Vec3(-2.0, -3.0, 0.0))
+    engine.look_at(Vec3(0.0, -3.0, 1.0))
+    assert engine.state().hash() == before.hash()
+    assert place(before, PLATE).horizontal_distance(before.body.position) > 0.35
+
+
+def test_a_watched_carrier_pushes_nothing_through_the_wall(engine: BuiltinEngine) -> None:
+    engine.pick(PLATE)
+    lowest: list[float] = []
+
+    def watch(_: float) -> bool:
+        shown = engine.stage.shown(engine.figure)
+        box = engine.world.box(PLATE)
+        assert shown.hand.distance(box.center) < 1e-6
+        lowest.append(float(box.corners()[:, 0].min()))
+        return True
+
+    engine.stage.watcher = watch
+    try:
+        engine.walk_to(Vec3(-2.75, -2.0, 0.0))
+        engine.look_at(Vec3(-3.0, -2.0, 1.0))
+    finally:
+        engine.stage.watcher = None
+    assert len(lowest) > 20
+    assert min(lowest) > -3.0
+
+
+def test_the_rules_tell_a_held_thing_in_a_wall(engine: BuiltinEngine) -> None:
+    engine.pick(PLATE)
+    engine.walk_to(Vec3(-2.75, -1.0, 0.0))
+    sound = Soundness(engine.world)
+    assert sound.state_faults(engine.state()) == []
+    physics.place(engine.world, PLATE, Vec3(-3.05, -1.0, 1.05))
+    assert any("not inside the room" in fault for fault in sound.state_faults(engine.state()))
 
 
 def test_a_free_point_on_the_floor_takes_the_object(engine: BuiltinEngine) -> None:
@@ -262,3 +342,26 @@ def test_a_damaged_snapshot_is_refused(engine: BuiltinEngine) -> None:
         with pytest.raises(EngineError, match="damaged"):
             engine.restore(damaged)
     assert engine.state().hash() == before
+
+
+def test_the_first_picture_needs_no_scipy() -> None:
+    """Its import would take a tenth of the time from the start to the first frame."""
+    program = (
+        "import sys; import adamo; from adamo.action_server import LocalActionServer;"
+        "LocalActionServer(adamo.create_engine('s1'), resolution=(320, 180)).observe();"
+        "print(sorted(name for name in sys.modules if name.split('.')[0] == 'scipy'))"
+    )
+    out = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    ).stdout
+    assert out.strip() == "[]"
+
+
+def test_drawing_leaves_the_model_as_it_is(engine: BuiltinEngine) -> None:
+    """The ids are drawn without textures; the model keeps them."""
+    model = engine.world.model
+    sizes = model.tex_width.copy(), model.tex_height.copy()
+    SceneRenderer(model, engine.world.object_of_geom).close()
+    assert (model.tex_width == sizes[0]).all()
+    assert (model.tex_height == sizes[1]).all()
+    assert sizes[0].min() > 1

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from adamo.errors import SceneError
 from adamo.runtime.builtin import BuiltinEngine
 from adamo.runtime.scenes import load_scene, parse_scene
 from adamo.runtime.scenes.arrangement import inspect_arrangement
@@ -60,16 +61,65 @@ def test_what_is_wrong_is_found(before: str, after: str, where: str, part: str) 
     assert any(place.startswith(where) and part in problem for _, place, problem in found), found
 
 
-@pytest.mark.parametrize("asset", ["tape", "key"])
-def test_a_pile_of_objects_is_told_and_never_simulated(asset: str) -> None:
+def pile(asset: str, count: int) -> str:
+    """A scene with so many objects in the same place."""
     items = (
         f'[[objects]]\nid = {i}\nasset = "{asset}"\non = "table"\nposition = [0.0, -1.0]\n'
-        for i in range(200)
+        for i in range(count)
     )
-    found = inspect_arrangement(parse_scene(HEAD + "\n".join(items), "pile.toml"))
+    return HEAD + "\n".join(items)
+
+
+@pytest.mark.parametrize("asset", ["tape", "key"])
+def test_a_pile_of_objects_is_told_and_never_simulated(asset: str) -> None:
+    found = inspect_arrangement(parse_scene(pile(asset, 200), "pile.toml"))
     assert all(finding.blocks and "overlap" in finding.problem for finding in found[:-1])
     assert found[-1].problem.startswith("19880 more")
     assert len(found) == 21
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        (pile("tape", 100), "objects[1].position: objects 0 and 1 overlap; move one of them"),
+        (S1.replace("[0.0, -1.0, 0.8]", "[1.8, 1.6, 3.0]", 1), "lights[1].target: the light is"),
+        (S1.replace('on = "table"', 'on = "table/top"', 1), "objects[0].on: nothing can lie on"),
+    ],
+)
+def test_what_cannot_be_simulated_is_refused_by_the_engine(text: str, part: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        BuiltinEngine(parse_scene(text, "mine.toml"))
+    assert part in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_the_physics_refuses_is_an_error_that_names_the_fix(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So few may be only clumsy, and are tried; MuJoCo logs its failure where it runs."""
+    monkeypatch.chdir(tmp_path)
+    scene = parse_scene(pile("tape", 9), "pile.toml")
+    assert not any(finding.blocks for finding in inspect_arrangement(scene))
+    with pytest.raises(SceneError, match="physics cannot take it") as caught:
+        BuiltinEngine(scene)
+    assert "move apart what touches" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_pile_can_be_run_without_a_traceback(tmp_path: Path) -> None:
+    path = tmp_path / "pile.toml"
+    path.write_text(pile("tape", 100))
+    command = ["run", "Pick the tape", "--scene", str(path), "--model", "baseline"]
+    done = subprocess.run(
+        [sys.executable, "-m", "adamo", *command],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert done.returncode != 0
+    assert "Traceback" not in done.stderr
+    assert "objects 0 and 1 overlap; move one of them" in " ".join(done.stderr.split())
 
 
 @pytest.mark.parametrize(

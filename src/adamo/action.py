@@ -78,6 +78,22 @@ class Drop:
     z: _Z
 
 
+@dataclass(frozen=True, slots=True)
+class Inspect:
+    """See an object in view close up, large enough to read what is printed on it."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+
+    object: Annotated[str, Field(description="Tag of the object, as shown in the view.")]
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """See all objects in view close up on one sheet, each with its tag."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+
+
 class Outcome(StrEnum):
     """How an action ended."""
 
@@ -109,6 +125,7 @@ class Code(StrEnum):
     BAD_ARGUMENT = "bad_argument"
     UNKNOWN_TAG = "unknown_tag"
     NOT_SEEN = "not_seen"
+    NOT_IN_VIEW = "not_in_view"
     OUTSIDE_ROOM = "outside_room"
     HAND_FULL = "hand_full"
     HAND_EMPTY = "hand_empty"

@@ -57,10 +57,14 @@ class SceneInfo:
 
     def contains(self, point: Vec3, margin_m: float = 0.05) -> bool:
         """Whether a point is in the room, up to a margin."""
+        between = -margin_m <= point.z <= self.height_m + margin_m
+        return between and self.is_within_walls(point, margin_m)
+
+    def is_within_walls(self, point: Vec3, margin_m: float) -> bool:
+        """Whether a point is between the walls, up to a margin; a negative one keeps off them."""
         return (
             self.x_min - margin_m <= point.x <= self.x_max + margin_m
             and self.y_min - margin_m <= point.y <= self.y_max + margin_m
-            and -margin_m <= point.z <= self.height_m + margin_m
         )
 
 
@@ -153,6 +157,15 @@ class Engine(Protocol):
 
     def capture(self, width_px: int, height_px: int) -> Percept:
         """See the room through the body's eyes."""
+        ...
+
+    def closeup(
+        self, point: Vec3, vertical_fov_rad: float, width_px: int, height_px: int
+    ) -> Percept:
+        """See a part of the room larger, from the same eyes through a narrower angle.
+
+        Body and gaze stay as they are; the picture is centred on the point.
+        """
         ...
 
     def raycast(self, origin: Vec3, directions: Array) -> Sequence[Vec3 | None]:

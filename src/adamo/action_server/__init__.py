@@ -2,9 +2,10 @@
 
 from adamo.action_server.local import LocalActionServer
 from adamo.action_server.protocol import ActionResult, ActionServer, execute_call
-from adamo.action_server.tools import PAPER_TOOLS, Tool, ToolContext
+from adamo.action_server.tools import LEAN_TOOLS, PAPER_TOOLS, Tool, ToolContext
 
 __all__ = [
+    "LEAN_TOOLS",
     "PAPER_TOOLS",
     "ActionResult",
     "ActionServer",

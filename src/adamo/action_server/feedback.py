@@ -68,6 +68,11 @@ def dropped(report: BodyReport, tag: str, target: Vec3, support: str) -> Feedbac
     )
 
 
+def shown(what: str) -> Feedback:
+    """After a picture was shown."""
+    return Feedback(Outcome.DONE, Code.OK, f"Done: {what}.")
+
+
 def _stopped(report: BodyReport) -> Feedback:
     return _feedback(report, f"stopped on request before the end, at {report.point}")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
@@ -14,8 +14,20 @@ from adamo.action_server.protocol import ActionResult
 from adamo.action_server.tools import PAPER_TOOLS, Tool
 from adamo.engine import Engine
 from adamo.errors import EngineError, InvalidActionError
-from adamo.observation import AgentState, Observation
+from adamo.geometry import Vec3
+from adamo.observation import AgentState, Frame, Observation, Percept
 from adamo.perception import PerceptionConfig, agent_state, perceive
+from adamo.perception.closeup import closeup_of, seen_corners
+from adamo.perception.contact_sheet import MAX_CELLS, contact_sheet
+from adamo.perception.overlay import encoded
+from adamo.perception.reference_points import only
+from adamo.perception.visibility import VisibleObject, visible_objects
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+_WALL_M = 0.05
+"""A place this close to a wall is on it."""
 
 PAPER_REFRESH = frozenset({"Look"})
 """The paper's refresh rule: a new view at the start and after Look only (Sec. 3.1)."""
@@ -49,6 +61,7 @@ class LocalActionServer:
         self._refresh_after = refresh_after
         self._names = engine.object_names
         self._seen: set[int] = set()
+        self._shown: list[Frame] = []
 
     @property
     def actions(self) -> tuple[type, ...]:
@@ -81,15 +94,58 @@ class LocalActionServer:
     def observe(self) -> Observation:
         """The view from where the body stands now; what it lists counts as seen."""
         percept = self.engine.capture(*self._resolution)
-        observation = perceive(percept, self.engine.raycast, self._perception, self._names)
+        raycast = only(self._is_anchor, self.engine.raycast)
+        observation = perceive(percept, raycast, self._perception, self._names)
         for item in observation.objects:
             object_id = self._perception.labeling.resolve(item.tag, self._names)
             if object_id is not None:
                 self._seen.add(object_id)
         return observation
 
+    def _is_anchor(self, point: Vec3) -> bool:
+        """Whether a place can be a reference point: in the room, not behind its window."""
+        margin_m = _WALL_M if self._perception.points_on_walls else -_WALL_M
+        below = point.z <= self._perception.points_below_m
+        return below and self.engine.scene.is_within_walls(point, margin_m)
+
+    def show_closeup(self, object_id: int) -> bool:
+        """Show an object close up with the next result.
+
+        Returns:
+            False if it is neither in view now nor in the hand.
+        """
+        view, listed = self._in_view()
+        boxes = {item.id: item.box_px for item in listed}
+        if view.body.held == object_id:
+            # One can always look at one's own hand, and feels how large the thing in it is.
+            points = self.engine.state().object(object_id).box.corners()
+        elif object_id in boxes:
+            points = seen_corners(view, boxes[object_id])
+        else:
+            return False
+        self._show(closeup_of(view, object_id, self.tag(object_id), points, self.engine.closeup))
+        return True
+
+    def show_sheet(self) -> tuple[str, ...]:
+        """Show all objects in view on one sheet with the next result; their tags, in order."""
+        view, listed = self._in_view()
+        items = [(item.id, self.tag(item.id), item.box_px) for item in listed[:MAX_CELLS]]
+        if items:
+            self._show(contact_sheet(view, items, self.engine.closeup))
+        return tuple(tag for _, tag, _ in items)
+
+    def _in_view(self) -> tuple[Percept, Sequence[VisibleObject]]:
+        """What the eyes see now, and what of it is large enough to be listed."""
+        percept = self.engine.capture(*self._resolution)
+        return percept, visible_objects(percept, self._perception.min_pixels)
+
+    def _show(self, picture: Image) -> None:
+        config = self._perception
+        self._shown.append(encoded(picture, config.image_format, config.jpeg_quality))
+
     def execute(self, action: Action) -> ActionResult:
         """Carry out one action of a type on offer; what the agent did wrong becomes feedback."""
+        self._shown = []
         try:
             feedback = self._tools[type(action)].execute(self, action)
         except InvalidActionError as error:
@@ -97,7 +153,8 @@ class LocalActionServer:
         view = None
         if feedback.outcome is not Outcome.REFUSED:
             view = self.observe() if action_name(type(action)) in self._refresh_after else None
-        return ActionResult(feedback, self.agent(), view, self.state_hash(), self.save())
+        hashed, saved = self.state_hash(), self.save()
+        return ActionResult(feedback, self.agent(), view, hashed, saved, tuple(self._shown))
 
     def agent(self) -> AgentState:
         """The body now, in the agent's words."""

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from adamo.action import Action, Feedback, parse
 from adamo.errors import InvalidActionError
-from adamo.observation import AgentState, Observation
+from adamo.observation import AgentState, Frame, Observation
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +24,8 @@ class ActionResult:
     """Digest of the world after the action; reveals nothing, proves replays."""
     saved: str
     """What `ActionServer.save` gives after the action."""
+    pictures: tuple[Frame, ...] = ()
+    """What the action itself showed, e.g. a close-up; not the view of the eyes."""
 
 
 class ActionServer(Protocol):

@@ -17,7 +17,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from adamo.action import Code, Drop, Feedback, Look, Pick, Walk
+from adamo.action import Code, Drop, Feedback, Inspect, Look, Pick, Survey, Walk
 from adamo.action_server import feedback
 from adamo.engine import FLOOR, Engine, supporting_object
 from adamo.errors import InvalidActionError
@@ -42,6 +42,14 @@ class ToolContext(Protocol):
         Raises:
             InvalidActionError: No object with this tag was seen so far.
         """
+        ...
+
+    def show_closeup(self, object_id: int) -> bool:
+        """Show an object close up; False if it is neither in view now nor in the hand."""
+        ...
+
+    def show_sheet(self) -> tuple[str, ...]:
+        """Show all objects in view on one sheet; their tags in order, none if there is none."""
         ...
 
 
@@ -110,6 +118,23 @@ def drop(context: ToolContext, action: Drop) -> Feedback:
     return feedback.dropped(report, context.tag(held), point, _support(context, report.support))
 
 
+def inspect(context: ToolContext, action: Inspect) -> Feedback:
+    """Show an object close up that is in view or in the hand."""
+    object_id = context.seen_object(action.object)
+    tag = context.tag(object_id)
+    if not context.show_closeup(object_id):
+        raise InvalidActionError(Code.NOT_IN_VIEW, f"{tag} is not in view now; look at it first.")
+    return feedback.shown(f"{tag} close up")
+
+
+def survey(context: ToolContext, action: Survey) -> Feedback:
+    """Show all objects in view on one sheet."""
+    tags = context.show_sheet()
+    if not tags:
+        raise InvalidActionError(Code.NOT_IN_VIEW, "no object is in view now; look round first.")
+    return feedback.shown(f"sheet, row by row: {', '.join(tags)}")
+
+
 def _support(context: ToolContext, support: str | None) -> str:
     if support is None:
         return "and does not rest on anything"
@@ -129,3 +154,8 @@ PAPER_TOOLS: tuple[Tool, ...] = (
     Tool(Drop, drop),
 )
 """The paper's four primitives."""
+
+INSPECT = Tool(Inspect, inspect)
+SURVEY = Tool(Survey, survey)
+LEAN_TOOLS: tuple[Tool, ...] = (*PAPER_TOOLS, INSPECT, SURVEY)
+"""The paper's four, and two that show more of what is in view."""

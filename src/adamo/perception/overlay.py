@@ -141,7 +141,7 @@ def draw_overlay(
         else:
             sprite = plate(tag.tag, scale.point_font, None)
         picture.paste(sprite, tag.rect[:2], sprite)
-    return _encoded(picture, image_format, jpeg_quality)
+    return encoded(picture, image_format, jpeg_quality)
 
 
 def _draw_box(
@@ -172,7 +172,8 @@ def _draw_leader(
     draw.line(leader, fill=colour, width=scale.line)
 
 
-def _encoded(picture: Image.Image, image_format: ImageFormat, jpeg_quality: int) -> Frame:
+def encoded(picture: Image.Image, image_format: ImageFormat, jpeg_quality: int) -> Frame:
+    """Encode a picture; see `draw_overlay`."""
     buffer = io.BytesIO()
     if image_format is ImageFormat.JPEG:
         picture.save(buffer, "JPEG", quality=jpeg_quality)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -22,6 +23,10 @@ class PerceptionConfig:
     """How objects are called."""
     grid: int = 6
     """Reference points along each side of the picture; 0 shows none."""
+    points_below_m: float = math.inf
+    """Reference points higher than this get no number."""
+    points_on_walls: bool = True
+    """Whether reference points on the walls get a number: nothing can be put there."""
     min_pixels: int = 20
     """Visible pixels that an object needs at 1920x1080; scaled with the picture's area."""
     image_format: ImageFormat = ImageFormat.JPEG

@@ -13,6 +13,16 @@ Raycast = Callable[[Vec3, Array], Sequence[Vec3 | None]]
 """Like `adamo.engine.Engine.raycast`: origin and (N, 3) unit directions to first hits."""
 
 
+def only(keep: Callable[[Vec3], bool], raycast: Raycast) -> Raycast:
+    """A raycast whose hits count only where they may be anchors."""
+
+    def cast(origin: Vec3, directions: Array) -> Sequence[Vec3 | None]:
+        hits = raycast(origin, directions)
+        return [hit if hit is not None and keep(hit) else None for hit in hits]
+
+    return cast
+
+
 def grid_pixels(width_px: int, height_px: int, n: int) -> Array:
     """Centres of the n x n cells of a picture.
 

@@ -83,25 +83,42 @@ def _boxes(layers: Sequence[_Ids]) -> dict[int, PixelBox]:
 
 def _boxes_where(layer: _Ids, changed: NDArray[np.bool_]) -> dict[int, PixelBox]:
     """Tight box of every id inside the rectangle that holds all changed pixels."""
-    from scipy.ndimage import find_objects
-
     rows, columns = np.flatnonzero(changed.any(axis=1)), np.flatnonzero(changed.any(axis=0))
     if not len(rows):
         return {}
     top, left = int(rows[0]), int(columns[0])
     window = layer[top : rows[-1] + 1, left : columns[-1] + 1]
-    # find_objects skips 0 and boxes every label from 1 on.
-    found = find_objects(window.astype(np.int32) - NOTHING)
-    return {
-        label + 1 + NOTHING: (
-            left + place[1].start,
-            top + place[0].start,
-            left + place[1].stop,
-            top + place[0].stop,
-        )
-        for label, place in enumerate(found)
-        if place is not None
-    }
+    ids, rows, starts, stops = _runs(window)
+    if not len(ids):
+        return {}
+    first = np.flatnonzero(np.concatenate([[True], ids[1:] != ids[:-1]]))
+    sides = (
+        left + np.minimum.reduceat(starts, first),
+        top + np.minimum.reduceat(rows, first),
+        left + np.maximum.reduceat(stops, first),
+        top + np.maximum.reduceat(rows, first) + 1,
+    )
+    boxes = zip(*(side.tolist() for side in sides), strict=True)
+    return dict(zip(ids[first].tolist(), boxes, strict=True))
+
+
+def _runs(window: _Ids) -> tuple[NDArray[np.intp], ...]:
+    """Horizontal runs of one object's pixels: id, row, first and past-the-last column; by id.
+
+    They are few, so that sorting them is much cheaper than looking for each id.
+    """
+    height, width = window.shape[0], window.shape[1] + 1
+    padded = np.full((height, width), NOTHING, np.int16)
+    # A column of nothing ends the last run of each row.
+    padded[:, :-1] = window
+    line = padded.ravel()
+    ends = np.flatnonzero(line[1:] != line[:-1])
+    starts = np.concatenate([[0], ends[:-1] + 1])[: len(ends)]
+    ids = line[ends]
+    shown = np.flatnonzero(ids != NOTHING)
+    order = shown[np.argsort(ids[shown], kind="stable")]
+    row, column = np.divmod(starts[order], width)
+    return ids[order].astype(np.intp), row, column, ends[order] % width + 1
 
 
 def _union(a: PixelBox, b: PixelBox) -> PixelBox:

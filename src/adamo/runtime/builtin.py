@@ -24,9 +24,10 @@ from adamo.runtime.human.motion import drop_motion, look_motion, pick_motion, wa
 from adamo.runtime.navigation import BODY_RADIUS_M, FloorMap, Path, Ways
 from adamo.runtime.placement import Spot, free_spots, spread
 from adamo.runtime.scenes.scene import Scene, load_scene
+from adamo.runtime.settled import settled_world
 from adamo.runtime.solids import Solid
 from adamo.runtime.stage import Stage
-from adamo.runtime.world import World, build_world
+from adamo.runtime.world import World
 
 if TYPE_CHECKING:
     import mujoco
@@ -78,17 +79,16 @@ class BuiltinEngine:
             figure: Who the virtual human is, one of `adamo.runtime.human.looks.VARIANTS`.
 
         Raises:
-            SceneError: The scene is unknown or wrong.
+            SceneError: The scene is unknown or wrong, or the physics cannot take it.
             ConfigError: No figure has this name.
         """
         self._scene = load_scene(scene) if isinstance(scene, str) else scene
         self._info = self._scene.info()
-        self._world: World = build_world(self._scene, load_figure(figure))
+        self._world: World = settled_world(self._scene, load_figure(figure))
         self.stage = Stage(self._world)
         """Draws the world, and lets actions be watched."""
         self._known_ways: tuple[object, Ways] | None = None
         self._said: list[str] = []
-        physics.settle(self._world, None)
         self._settled = self._world.data.qpos.copy()
         self._body = self._start()
 
@@ -127,6 +127,13 @@ class BuiltinEngine:
         camera = self._body.camera(width_px, height_px)
         return self.stage.view(self._body, camera, from_the_eyes=True)
 
+    def closeup(
+        self, point: Vec3, vertical_fov_rad: float, width_px: int, height_px: int
+    ) -> Percept:
+        """See a part of the room larger; body and gaze stay as they are."""
+        camera = self._body.camera_to(point, vertical_fov_rad, width_px, height_px)
+        return self.stage.detail(self._body, camera)
+
     def view(self, camera: Camera) -> Percept:
         """The world, with the body in it, from any camera."""
         return self.stage.view(self._body, camera, from_the_eyes=False)
@@ -160,7 +167,7 @@ class BuiltinEngine:
         """Turn body and gaze to a point."""
         body, exact = self._body.facing(point)
         motion = partial(look_motion, self._body, body, self._held_size())
-        self._move(self.stage.perform(body, motion))
+        self._move(self.stage.perform(body, motion, self._body.held))
         if self._body != body:
             return BodyReport(Outcome.CORRECTED, Code.CANCELLED, self._body.gaze)
         if exact:

@@ -77,12 +77,18 @@ class Body:
 
     def camera(self, width_px: int, height_px: int) -> Camera:
         """The view through the eyes."""
+        return self.camera_to(self.gaze, FOV_Y_RAD, width_px, height_px)
+
+    def camera_to(
+        self, point: Vec3, vertical_fov_rad: float, width_px: int, height_px: int
+    ) -> Camera:
+        """A view from the eyes, centred on a point, whatever the gaze is."""
         eyes = self.eyes
-        line = self.gaze - eyes
+        line = point - eyes
         flat = math.hypot(line.x, line.y)
         yaw = math.atan2(line.y, line.x) if flat > 1e-6 else self.heading_rad
         pitch = math.atan2(line.z, flat)
-        return Camera(eyes, yaw, pitch, FOV_Y_RAD, width_px, height_px)
+        return Camera(eyes, yaw, pitch, vertical_fov_rad, width_px, height_px)
 
 
 def _direction(yaw_rad: float, pitch_rad: float) -> Vec3:

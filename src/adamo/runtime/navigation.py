@@ -10,15 +10,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from adamo.engine import SceneInfo
 from adamo.geometry import Array, Vec3
 from adamo.runtime.solids import Solid, Solids
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 CELL_M = 0.05
 BODY_RADIUS_M = 0.25
@@ -94,6 +96,8 @@ class FloorMap:
 
     @cached_property
     def _graph(self) -> csr_array:
+        from scipy.sparse import csr_array
+
         free = self._free.reshape(self._shape)
         index = np.arange(free.size).reshape(self._shape)
         rows, cols, costs = [], [], []
@@ -120,6 +124,8 @@ class FloorMap:
 
     def ways_from(self, start: Vec3) -> Ways:
         """All shortest ways from a place."""
+        from scipy.sparse.csgraph import dijkstra
+
         cell = self._cell(start)
         lengths, before = dijkstra(
             self._graph, directed=False, indices=cell, return_predecessors=True

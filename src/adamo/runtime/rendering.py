@@ -101,7 +101,7 @@ class SceneRenderer:
         self._object_of_geom = object_of_geom
         self._gl = open_gl(model.vis.global_.offwidth, model.vis.global_.offheight)
         self._gl.make_current()
-        self._contexts = (_context(model, MSAA_SAMPLES, SHADOW_MAP_PX), _context(model, 0, 0))
+        self._contexts = _context(model, MSAA_SAMPLES, SHADOW_MAP_PX), _plain_context(model)
         self._closed = False
         self._scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
         self._option = mujoco.MjvOption()
@@ -151,7 +151,7 @@ class SceneRenderer:
         return self._buffer[::-1]
 
     def color(
-        self, data: mujoco.MjData, camera: Camera, *, head: bool = False
+        self, data: mujoco.MjData, camera: Camera, *, head: bool = False, shadow: bool = True
     ) -> NDArray[np.uint8]:
         """Draw the colour picture.
 
@@ -159,12 +159,14 @@ class SceneRenderer:
             data: The state of the world.
             camera: From where.
             head: Draw the figure's head too; not when the camera is in it.
+            shadow: Draw shadows, which draws the whole scene once more.
 
         Returns:
             (H, W, 3) uint8.
         """
         self._option.skingroup[HEAD_GROUP] = head
         rect = self._aim(data, camera)
+        self._scene.flags[self._mujoco.mjtRndFlag.mjRND_SHADOW.value] = shadow
         return self._draw(rect, self._contexts[0]).copy()
 
     def layers(
@@ -253,6 +255,16 @@ def _bounds(mask: NDArray[np.bool_]) -> tuple[slice, slice]:
     """Rows and columns that hold all true pixels; there is at least one."""
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     return slice(int(rows[0]), int(rows[-1]) + 1), slice(int(columns[0]), int(columns[-1]) + 1)
+
+
+def _plain_context(model: mujoco.MjModel) -> mujoco.MjrContext:
+    """A context for ids, which show no texture: uploading them again would take time and memory."""
+    kept = model.tex_width.copy(), model.tex_height.copy()
+    model.tex_width[:], model.tex_height[:] = 1, 1
+    try:
+        return _context(model, 0, 0)
+    finally:
+        model.tex_width[:], model.tex_height[:] = kept
 
 
 def _context(model: mujoco.MjModel, samples: int, shadow_px: int) -> mujoco.MjrContext:

@@ -43,9 +43,10 @@ class Soundness:
         held = state.body.held
         faults = [*self._hand(state), *self._body(state), *self._contacts(held)]
         for item in state.objects:
-            # What is held floats before the chest, also where that is in a wall.
+            faults += self._inside(item, state)
+            # What is held floats before the chest, also where that is in furniture.
             if not item.held:
-                faults += self._resting(item, state)
+                faults += self._resting(item)
         return faults
 
     @staticmethod
@@ -68,14 +69,18 @@ class Soundness:
             faults.append(f"the body floats at {at.z:.4f} m")
         return faults
 
-    def _resting(self, item: ObjectState, state: WorldState) -> list[str]:
+    @staticmethod
+    def _inside(item: ObjectState, state: WorldState) -> list[str]:
         room, corners = state.scene, item.box.corners()
         low, high = corners.min(axis=0), corners.max(axis=0)
         floor = np.array([room.x_min, room.y_min, 0.0]) - DEPTH_M
         ceiling = np.array([room.x_max, room.y_max, room.height_m]) + DEPTH_M
+        if (low >= floor).all() and (high <= ceiling).all():
+            return []
+        return [f"object {item.id} at {item.box.center} is not inside the room"]
+
+    def _resting(self, item: ObjectState) -> list[str]:
         faults = []
-        if not ((low >= floor).all() and (high <= ceiling).all()):
-            faults.append(f"object {item.id} at {item.box.center} is not inside the room")
         if item.support is None:
             faults.append(f"object {item.id} at {item.box.center} rests on nothing")
         if self._furniture.hold(item.box.center.array()[None], DEPTH_M)[0]:

@@ -23,6 +23,8 @@ from adamo.runtime.rendering import SceneRenderer
 from adamo.runtime.world import World
 
 FRAMES_PER_S = 15
+_OFF_THE_WALL_M = 0.005
+"""How near a held thing comes to a wall."""
 
 Watcher = Callable[[float], bool]
 """Is called for every shown moment with the simulated seconds since the action began; what it draws
@@ -47,13 +49,31 @@ class Stage:
             self._renderer = SceneRenderer(self._world.model, self._world.object_of_geom)
         return self._renderer
 
-    def standing(self, body: Body) -> BodyFrame:
+    def _standing(self, body: Body) -> BodyFrame:
         """The figure between actions."""
         return BodyFrame(body, at_rest(body, self._size(body.held)))
 
     def hand(self, body: Body) -> Vec3:
         """Where the hand of a standing figure is, and with it what it holds."""
-        return self.standing(body).hand
+        return self.held_at(self._standing(body))
+
+    def held_at(self, frame: BodyFrame) -> Vec3:
+        """Where the middle of the held thing is: in the hand, but never in a wall."""
+        held, hand = frame.body.held, frame.hand
+        if held is None:
+            return hand
+        box, room = self._world.box(held), self._world.room
+        half = np.abs(box.orientation.matrix()) @ box.size.array() / 2 + _OFF_THE_WALL_M
+        x = min(max(hand.x, room.x_min + half[0]), room.x_max - half[0])
+        y = min(max(hand.y, room.y_min + half[1]), room.y_max - half[1])
+        return Vec3(float(x), float(y), hand.z)
+
+    def _within_walls(self, frame: BodyFrame) -> BodyFrame:
+        """The figure with its hand drawn in where a wall is in the way of what it holds."""
+        if frame.body.held is None:
+            return frame
+        hand = self.held_at(frame)
+        return frame if hand == frame.hand else frame.with_hand_at(hand)
 
     def _size(self, object_id: int | None) -> Vec3 | None:
         return None if object_id is None else self._world.objects[object_id].size
@@ -66,23 +86,30 @@ class Stage:
             camera: From where.
             from_the_eyes: The camera is in the head, which must not hide the view.
         """
-        data = self._world.data
         shown = self.shown(body)
-        key = (camera, from_the_eyes, shown.body, self._moment is None, data.qpos.tobytes())
+        qpos = self._world.data.qpos.tobytes()
+        key = (camera, from_the_eyes, shown.body, self._moment is None, qpos)
         if self._moment is None and self._last is not None and self._last[0] == key:
             return self._last[1]
+        percept = self._percept(shown, camera, head=not from_the_eyes, shadow=True)
+        self._last = (key, percept)
+        return percept
+
+    def detail(self, body: Body, camera: Camera) -> Percept:
+        """Draw a small part of the view from the eyes, without shadows, which show little there."""
+        return self._percept(self.shown(body), camera, head=False, shadow=False)
+
+    def _percept(self, shown: BodyFrame, camera: Camera, *, head: bool, shadow: bool) -> Percept:
+        data = self._world.data
         self._pose(shown)
-        rgb = self.renderer.color(data, camera, head=not from_the_eyes)
-        layers = self.renderer.layers(data, camera, head=not from_the_eyes)
+        rgb = self.renderer.color(data, camera, head=head, shadow=shadow)
+        layers = self.renderer.layers(data, camera, head=head)
         present = frozenset[int]().union(*(layer.present for layer in layers))
         seen = {
             i: SeenObject(i, self._world.objects[i].class_name, self._world.box(i))
             for i in sorted(present)
         }
-        ids = tuple(layer.ids for layer in layers)
-        percept = Percept(rgb, ids, seen, shown.body.state(), camera)
-        self._last = (key, percept)
-        return percept
+        return Percept(rgb, tuple(layer.ids for layer in layers), seen, shown.body.state(), camera)
 
     def picture(self, body: Body, camera: Camera, *, head: bool = True) -> NDArray[np.uint8]:
         """Only the colour picture of this moment, (H, W, 3); without the head to look out of it."""
@@ -91,7 +118,7 @@ class Stage:
 
     def shown(self, body: Body) -> BodyFrame:
         """What is to be seen now: a moment of an action, or the figure between actions."""
-        return self._moment or self.standing(body)
+        return self._within_walls(self._moment or self._standing(body))
 
     @contextmanager
     def idling(self, body: Body, seconds: float) -> Iterator[None]:
@@ -134,7 +161,7 @@ class Stage:
             for seconds in (*moments.tolist(), motion.duration_s):
                 self._moment = motion.at(seconds)
                 if thing is not None and self._moment.body.held == thing:
-                    physics.place(self._world, thing, self._moment.hand)
+                    physics.place(self._world, thing, self.held_at(self._moment))
                 elif thing is not None and rest is not None:
                     physics.place(self._world, thing, rest)
                 if not self.watcher(seconds):

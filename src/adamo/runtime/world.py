@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from adamo.observation import NOTHING
 from adamo.runtime.assets.asset import Asset, Collider
 from adamo.runtime.embodiment import FOV_Y_RAD
 from adamo.runtime.human.looks import Figure
-from adamo.runtime.scenes.scene import Furniture, Light, PlacedObject, Scene
+from adamo.runtime.scenes.scene import Furniture, Light, PlacedObject, Room, Scene
 from adamo.runtime.solids import Solid
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ class World:
 
     model: mujoco.MjModel
     data: mujoco.MjData
+    room: Room
     objects: dict[int, WorldObject]
     surfaces: tuple[WorldSurface, ...]
     solids: tuple[Solid, ...]
@@ -79,24 +81,78 @@ class World:
         return Box(Vec3.of(q[:3]), item.size, turn)
 
 
-def build_world(scene: Scene, figure: Figure) -> World:
+def scene_assets(scene: Scene) -> dict[str, Asset]:
+    """Every asset that a scene names, loaded once."""
+    from adamo.runtime.assets.bake import load_asset
+
+    names = {item.asset for item in scene.furniture} | {item.asset for item in scene.objects}
+    return {name: load_asset(name) for name in sorted(names)}
+
+
+def build_world(scene: Scene, figure: Figure, assets: Mapping[str, Asset] | None = None) -> World:
     """Compile a scene with a person in it.
+
+    Args:
+        scene: What is where.
+        figure: The person.
+        assets: Every asset that the scene names; are loaded if not given.
 
     Raises:
         SceneError: An object lies on a level that its furniture does not have.
     """
     import mujoco
 
-    from adamo.runtime.assets.bake import load_asset
     from adamo.runtime.assets.mujoco_parts import add_asset
     from adamo.runtime.human.skin_mujoco import add_human
 
+    if assets is None:
+        assets = scene_assets(scene)
     spec = _empty_spec()
-    room = scene.room
     shell = load_room(scene)
     walls = spec.worldbody.add_body(name=ROOM)
     add_asset(spec, walls, shell, ROOM)
     _cast_no_shadow(walls)
+    surfaces, solids = _furnish(spec, scene, assets)
+    for item in scene.objects:
+        _add_object(spec, item, assets[item.asset], surfaces)
+    for light in scene.lights:
+        _add_light(spec, light)
+    add_human(spec, figure)
+    model = spec.compile()
+    del spec
+    _return_memory()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    placed = sorted(scene.objects, key=lambda item: item.id)
+    objects = {item.id: _locate(model, item.id, assets[item.asset]) for item in placed}
+    object_of_geom = np.full(model.ngeom, NOTHING, np.int16)
+    for world_object in objects.values():
+        object_of_geom[model.geom_bodyid == world_object.body] = world_object.id
+    furniture_of_body = {model.body(p.name).id: p.name for p in scene.furniture}
+    return World(
+        model,
+        data,
+        scene.room,
+        objects,
+        tuple(surfaces),
+        tuple(solids),
+        furniture_of_body,
+        object_of_geom,
+        data.qpos.copy(),
+    )
+
+
+def _furnish(
+    spec: mujoco.MjSpec, scene: Scene, assets: Mapping[str, Asset]
+) -> tuple[list[WorldSurface], list[Solid]]:
+    """Put the furniture in.
+
+    Returns:
+        What carries things, the floor first, and what the furniture occupies.
+    """
+    from adamo.runtime.assets.mujoco_parts import add_asset
+
+    room = scene.room
     surfaces = [
         WorldSurface(
             FLOOR,
@@ -108,7 +164,7 @@ def build_world(scene: Scene, figure: Figure) -> World:
     ]
     solids: list[Solid] = []
     for piece in scene.furniture:
-        asset = load_asset(piece.asset)
+        asset = assets[piece.asset]
         yaw = math.radians(piece.yaw_deg)
         body = spec.worldbody.add_body(
             name=piece.name, pos=[*piece.position, 0.0], quat=Quaternion.from_yaw(yaw).array()
@@ -118,32 +174,7 @@ def build_world(scene: Scene, figure: Figure) -> World:
             _cast_no_shadow(body)
         surfaces += furniture_surfaces(piece, asset)
         solids += furniture_solids(piece, asset)
-    assets = {item.id: load_asset(item.asset) for item in scene.objects}
-    for item in scene.objects:
-        _add_object(spec, item, assets[item.id], surfaces)
-    for light in scene.lights:
-        _add_light(spec, light)
-    add_human(spec, figure)
-    model = spec.compile()
-    del spec
-    _return_memory()
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    objects = {i: _locate(model, i, assets[i]) for i in sorted(assets)}
-    object_of_geom = np.full(model.ngeom, NOTHING, np.int16)
-    for world_object in objects.values():
-        object_of_geom[model.geom_bodyid == world_object.body] = world_object.id
-    furniture_of_body = {model.body(p.name).id: p.name for p in scene.furniture}
-    return World(
-        model,
-        data,
-        objects,
-        tuple(surfaces),
-        tuple(solids),
-        furniture_of_body,
-        object_of_geom,
-        data.qpos.copy(),
-    )
+    return surfaces, solids
 
 
 def _return_memory() -> None:

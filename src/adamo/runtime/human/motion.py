@@ -19,6 +19,7 @@ from adamo.runtime.embodiment import Body
 from adamo.runtime.human.anatomy import eyes, grip
 from adamo.runtime.human.gait import Gait, gait
 from adamo.runtime.human.handling import Handling
+from adamo.runtime.human.ik import arm_to
 from adamo.runtime.human.postures import (
     at_rest,
     blink,
@@ -64,6 +65,12 @@ class BodyFrame:
     def hand(self) -> Vec3:
         """World place of the right hand's grip point: the middle of a held thing."""
         return self._in_world(grip(self.pose))
+
+    def with_hand_at(self, place: Vec3) -> BodyFrame:
+        """The same moment, but the right arm is bent or turned so that the hand is at a place."""
+        turn = about_z(-self.body.heading_rad)
+        local = turn @ (place - self.body.position).array()
+        return BodyFrame(self.body, arm_to(self.pose, local)[0])
 
     @property
     def eyes(self) -> Vec3:

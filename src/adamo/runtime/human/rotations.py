@@ -2,14 +2,18 @@
 
 All functions take and return arrays with any leading axes. Angles are radians, right-handed: about
 +Z a positive angle turns left, about +Y it pitches down, about +X it leans to the right.
+
+Numpy alone does it: importing SciPy's rotations takes a tenth of the time to the first picture.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from adamo.geometry import Array
+
+_SMALL_RAD = 1e-3
+"""Below this a series is more exact than dividing by a sine."""
 
 
 def about(axis: Array | tuple[float, float, float], angle_rad: Array | float) -> Array:
@@ -83,14 +87,24 @@ def cross(a: Array, b: Array) -> Array:
 
 def rotation_vectors(rotations: Array) -> Array:
     """Axis times angle of rotations: (..., 3, 3) to (..., 3)."""
-    flat = rotations.reshape(-1, 3, 3)
-    return np.asarray(Rotation.from_matrix(flat).as_rotvec()).reshape(rotations.shape[:-1])
+    q = quaternions(rotations)
+    w, xyz = q[..., 0], q[..., 1:]
+    angle = 2.0 * np.arctan2(np.sqrt((xyz * xyz).sum(axis=-1)), w)
+    small = angle <= _SMALL_RAD
+    squared = angle * angle
+    series = 2.0 + squared / 12.0 + 7.0 * squared * squared / 2880.0
+    scale = np.where(small, series, angle / np.sin(np.where(small, 1.0, angle / 2.0)))
+    return np.asarray(scale[..., None] * xyz)
 
 
 def from_rotation_vectors(vectors: Array) -> Array:
     """Rotations from axis times angle: (..., 3) to (..., 3, 3)."""
-    flat = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
-    return np.asarray(flat).reshape(*vectors.shape, 3)
+    squared = (vectors * vectors).sum(axis=-1)
+    angle = np.sqrt(squared)
+    small = angle <= _SMALL_RAD
+    series = 0.5 - squared / 48.0 + squared * squared / 3840.0
+    scale = np.where(small, series, np.sin(angle / 2.0) / np.where(small, 1.0, angle))
+    return _matrices(np.cos(angle / 2.0), scale[..., None] * vectors)
 
 
 def blended(a: Array, b: Array, weight: float) -> Array:
@@ -106,14 +120,51 @@ def angles(a: Array, b: Array) -> Array:
 
 def quaternions(rotations: Array) -> Array:
     """Unit quaternions, scalar first and not negative: (..., 3, 3) to (..., 4)."""
-    flat = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_quat(canonical=True)
-    return np.asarray(flat)[:, [3, 0, 1, 2]].reshape(*rotations.shape[:-2], 4)
+    flat = np.asarray(rotations, np.float64).reshape(-1, 3, 3)
+    diagonal = np.stack([flat[:, 0, 0], flat[:, 1, 1], flat[:, 2, 2]], axis=1)
+    trace = diagonal.sum(axis=1)
+    # The largest part is computed first and the others from it, which loses no digits.
+    choice = np.argmax(np.column_stack([diagonal, trace]), axis=1)
+    i = choice % 3
+    j, k = (i + 1) % 3, (i + 2) % 3
+    n = np.arange(len(flat))
+    xyz = np.empty((len(flat), 3))
+    xyz[n, i] = 1.0 - trace + 2.0 * flat[n, i, i]
+    xyz[n, j] = flat[n, j, i] + flat[n, i, j]
+    xyz[n, k] = flat[n, k, i] + flat[n, i, k]
+    upright = np.stack(
+        [
+            flat[:, 2, 1] - flat[:, 1, 2],
+            flat[:, 0, 2] - flat[:, 2, 0],
+            flat[:, 1, 0] - flat[:, 0, 1],
+        ],
+        axis=1,
+    )
+    by_trace = choice == 3
+    w = np.where(by_trace, 1.0 + trace, flat[n, k, j] - flat[n, j, k])
+    found = np.column_stack([w, np.where(by_trace[:, None], upright, xyz)])
+    found /= np.sqrt((found * found).sum(axis=1))[:, None]
+    first = found[n, np.argmax(found != 0.0, axis=1)]
+    found *= np.where(first < 0.0, -1.0, 1.0)[:, None]
+    return found.reshape(*rotations.shape[:-2], 4)
 
 
 def from_quaternions(values: Array) -> Array:
     """Rotations from quaternions, scalar first: (..., 4) to (..., 3, 3)."""
-    flat = values.reshape(-1, 4)[:, [1, 2, 3, 0]]
-    return np.asarray(Rotation.from_quat(flat).as_matrix()).reshape(*values.shape[:-1], 3, 3)
+    unit = values / np.sqrt((values * values).sum(axis=-1))[..., None]
+    return _matrices(unit[..., 0], unit[..., 1:])
+
+
+def _matrices(w: Array, xyz: Array) -> Array:
+    x, y, z = xyz[..., 0], xyz[..., 1], xyz[..., 2]
+    xx, yy, zz, ww = x * x, y * y, z * z, w * w
+    xy, xz, yz, xw, yw, zw = x * y, x * z, y * z, x * w, y * w, z * w
+    rows = [
+        xx - yy - zz + ww, 2 * (xy - zw), 2 * (xz + yw),
+        2 * (xy + zw), -xx + yy - zz + ww, 2 * (yz - xw),
+        2 * (xz - yw), 2 * (yz + xw), -xx - yy + zz + ww,
+    ]  # fmt: skip
+    return np.stack(rows, axis=-1).reshape(*w.shape, 3, 3)
 
 
 def eased(value: Array | float) -> Array:

@@ -13,6 +13,7 @@ import numpy as np
 from adamo.geometry import Array
 from adamo.runtime.assets.mujoco_parts import add_material
 from adamo.runtime.human.looks import HEAD_GARMENTS, Figure, Garment
+from adamo.runtime.human.rotations import quaternions
 from adamo.runtime.human.skeleton import JOINTS, REST
 
 if TYPE_CHECKING:
@@ -51,11 +52,9 @@ def pose_human(model: mujoco.MjModel, data: mujoco.MjData, places: Array, rotati
         places: (J, 3) world places in the order of `skeleton.JOINTS`, metres.
         rotations: (J, 3, 3) world_from_joint.
     """
-    from scipy.spatial.transform import Rotation
-
     slots = [int(model.body(body_name(joint)).mocapid[0]) for joint in JOINTS]
     data.mocap_pos[slots] = places
-    data.mocap_quat[slots] = Rotation.from_matrix(rotations).as_quat(scalar_first=True)
+    data.mocap_quat[slots] = quaternions(rotations)
 
 
 def _add_skin(spec: mujoco.MjSpec, garment: Garment) -> None:

@@ -14,11 +14,16 @@ import numpy as np
 
 from adamo.engine import FLOOR
 from adamo.geometry import Vec3
-from adamo.runtime.assets.bake import load_asset
+from adamo.runtime.assets.asset import Asset
 from adamo.runtime.scenes.finding import SceneFinding, bounded, error, warning
 from adamo.runtime.scenes.scene import PlacedObject, Scene
 from adamo.runtime.solids import Solid, gaps
-from adamo.runtime.world import WorldSurface, furniture_solids, furniture_surfaces
+from adamo.runtime.world import (
+    WorldSurface,
+    furniture_solids,
+    furniture_surfaces,
+    scene_assets,
+)
 
 _FURNITURE_OVERLAP_M = 0.02
 _OBJECT_OVERLAP_M = 0.005
@@ -29,29 +34,39 @@ _MAX_OVERLAPS = 40
 """More are not simulated: their contacts could fill the memory."""
 
 
-def inspect_arrangement(scene: Scene) -> tuple[SceneFinding, ...]:
+Assets = Mapping[str, Asset]
+"""Assets by name."""
+
+
+def inspect_arrangement(scene: Scene, assets: Assets | None = None) -> tuple[SceneFinding, ...]:
     """Look over what can be told from the file alone.
+
+    Args:
+        scene: What the file says.
+        assets: Every asset that the scene names; are loaded if not given.
 
     Returns:
         The findings; one that `blocks` means that the scene cannot be simulated.
     """
-    surfaces = _surfaces(scene)
+    if assets is None:
+        assets = scene_assets(scene)
+    surfaces = _surfaces(scene, assets)
     return (
         *_lights(scene),
-        *_furniture(scene),
-        *_supports(scene, surfaces),
-        *_objects(scene, surfaces),
+        *_furniture(scene, assets),
+        *_supports(scene, assets, surfaces),
+        *_objects(scene, assets, surfaces),
     )
 
 
-def _surfaces(scene: Scene) -> dict[str, WorldSurface]:
+def _surfaces(scene: Scene, assets: Assets) -> dict[str, WorldSurface]:
     """Everything that carries things, by support name."""
     room = scene.room
     middle = Vec3((room.x_min + room.x_max) / 2, (room.y_min + room.y_max) / 2, 0.0)
     half_x, half_y = (room.x_max - room.x_min) / 2, (room.y_max - room.y_min) / 2
     found = [WorldSurface(FLOOR, middle, half_x, half_y, 0.0)]
     for piece in scene.furniture:
-        found += furniture_surfaces(piece, load_asset(piece.asset))
+        found += furniture_surfaces(piece, assets[piece.asset])
     return {surface.support: surface for surface in found}
 
 
@@ -75,8 +90,8 @@ def _lights(scene: Scene) -> Iterator[SceneFinding]:
         )
 
 
-def _furniture(scene: Scene) -> Iterator[SceneFinding]:
-    solids = [furniture_solids(piece, load_asset(piece.asset)) for piece in scene.furniture]
+def _furniture(scene: Scene, assets: Assets) -> Iterator[SceneFinding]:
+    solids = [furniture_solids(piece, assets[piece.asset]) for piece in scene.furniture]
     pairs = [
         (i, k)
         for (i, first), (k, second) in combinations(enumerate(solids), 2)
@@ -101,7 +116,9 @@ def _overlap(a: Solid, b: Solid, more_than_m: float) -> bool:
     return bool(gaps(np.array([[a.x, a.y]]), a, [b])[0] < -more_than_m)
 
 
-def _supports(scene: Scene, surfaces: Mapping[str, WorldSurface]) -> Iterator[SceneFinding]:
+def _supports(
+    scene: Scene, assets: Assets, surfaces: Mapping[str, WorldSurface]
+) -> Iterator[SceneFinding]:
     """Objects on levels that do not exist, or beyond the edge of those that do."""
     for i, item in enumerate(scene.objects):
         surface = surfaces.get(item.on)
@@ -110,7 +127,7 @@ def _supports(scene: Scene, surfaces: Mapping[str, WorldSurface]) -> Iterator[Sc
             problem = f"nothing can lie on {item.on!r}"
             yield error(f"objects[{i}].on", problem, f"one of {offer}", blocks=True)
             continue
-        past = _overhang_m(item, surface)
+        past = _overhang_m(item, assets[item.asset], surface)
         if past > _OVERHANG_M:
             yield warning(
                 f"objects[{i}].position",
@@ -119,9 +136,9 @@ def _supports(scene: Scene, surfaces: Mapping[str, WorldSurface]) -> Iterator[Sc
             )
 
 
-def _overhang_m(item: PlacedObject, surface: WorldSurface) -> float:
+def _overhang_m(item: PlacedObject, asset: Asset, surface: WorldSurface) -> float:
     """How far the footprint of an object reaches past the edge of a surface; negative inside."""
-    length, width, _ = load_asset(item.asset).size
+    length, width, _ = asset.size
     cos, sin = math.cos(surface.yaw_rad), math.sin(surface.yaw_rad)
     dx, dy = item.position[0] - surface.center.x, item.position[1] - surface.center.y
     turn = math.radians(item.yaw_deg) - surface.yaw_rad
@@ -131,10 +148,12 @@ def _overhang_m(item: PlacedObject, surface: WorldSurface) -> float:
     return max(along - surface.half_x, across - surface.half_y)
 
 
-def _objects(scene: Scene, surfaces: Mapping[str, WorldSurface]) -> Iterator[SceneFinding]:
+def _objects(
+    scene: Scene, assets: Assets, surfaces: Mapping[str, WorldSurface]
+) -> Iterator[SceneFinding]:
     """Objects whose boxes are in each other."""
     solids = [
-        (i, _as_placed(item, surfaces[item.on].center.z))
+        (i, _as_placed(item, assets[item.asset], surfaces[item.on].center.z))
         for i, item in enumerate(scene.objects)
         if item.on in surfaces
     ]
@@ -152,8 +171,8 @@ def _objects(scene: Scene, surfaces: Mapping[str, WorldSurface]) -> Iterator[Sce
     )
 
 
-def _as_placed(item: PlacedObject, z: float) -> Solid:
-    length, width, height = load_asset(item.asset).size
+def _as_placed(item: PlacedObject, asset: Asset, z: float) -> Solid:
+    length, width, height = asset.size
     yaw = math.radians(item.yaw_deg)
     # Flat things lie on each other just as badly as high ones stand in each other.
     return Solid(*item.position, length / 2, width / 2, yaw, z, z + max(height, _LEAST_HEIGHT_M))

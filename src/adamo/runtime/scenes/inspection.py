@@ -13,7 +13,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from adamo.errors import SceneError
 from adamo.geometry import Array, Camera, Vec3
 from adamo.runtime.builtin import BuiltinEngine
 from adamo.runtime.embodiment import EYE_HEIGHT_M, FOV_Y_RAD
@@ -40,13 +39,7 @@ def load_engine(scene: Scene) -> BuiltinEngine:
     Raises:
         SceneError: The physics cannot take it.
     """
-    import mujoco
-
-    try:
-        return BuiltinEngine(scene)
-    except (mujoco.FatalError, ValueError) as fault:
-        reason = str(fault).partition("\n")[0]
-        raise SceneError(f"{scene.name}: the physics cannot take it: {reason}") from None
+    return BuiltinEngine(scene)
 
 
 def inspect_scene(

@@ -21,6 +21,8 @@ from adamo.errors import SceneError
 
 _STRICT = ConfigDict(extra="forbid")
 _MAX_BYTES = 1_000_000
+_ROOM_M = (1.0, 20.0)
+"""Least and largest side of a room: nothing farther than 20 m from the eyes is drawn."""
 
 Metres = Annotated[float, Field(ge=-50, le=50, allow_inf_nan=False)]
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[A-Za-z0-9][A-Za-z0-9 _-]*$")]
@@ -184,9 +186,15 @@ def parse_scene(text: str, source: str) -> Scene:
 def _check(scene: Scene, source: str) -> None:
     """What the types alone cannot say."""
     room = scene.room
-    if room.x_max - room.x_min < 1 or room.y_max - room.y_min < 1:
+    sides = room.x_max - room.x_min, room.y_max - room.y_min
+    if min(sides) < _ROOM_M[0]:
         raise SceneError(
             f"{source}: room: smaller than 1 x 1 m; check x_min < x_max, y_min < y_max"
+        )
+    if max(sides) > _ROOM_M[1]:
+        raise SceneError(
+            f"{source}: room: {sides[0]:g} x {sides[1]:g} m is too large; "
+            f"make no side longer than {_ROOM_M[1]:g} m"
         )
     for where, problem in (*_misplaced(scene), *_misnamed(scene)):
         raise SceneError(f"{source}: {where}: {problem}")
