@@ -7,12 +7,12 @@ import time
 import pytest
 from tests.fake_provider import Canned, FakeProvider, completion, fault
 
-from adamo.errors import ConfigError, ProviderError
+from adamo.errors import ConfigError, ProviderError, RefusedError
 from adamo.inference.endpoint import NO_REMOTE
 from adamo.inference.messages import HumanMessage, TextPart
 from adamo.inference.model import Reply, Sampling
 from adamo.inference.provider import ProviderModel
-from adamo.inference.retry import RetryPolicy
+from adamo.inference.retry import Failure, RetryPolicy, run_with_retries
 
 ASK = (HumanMessage((TextPart("Pick the plate"),)),)
 QUICK = RetryPolicy(max_tries=3, max_wait_s=5.0, base_s=0.001, timeout_s=5.0)
@@ -143,6 +143,24 @@ def test_pauses_double_up_to_a_minute_and_never_undercut_the_server() -> None:
         assert most / 2 <= min(pauses) <= max(pauses) <= most
         assert len(set(pauses)) > 1
     assert policy.pause_s(1, 30.0) == 30.0
+
+
+def test_asking_for_less_is_no_retry_but_takes_its_time() -> None:
+    outcomes: list[Failure | str] = [
+        Failure("no top_p", False, refused="top_p"),
+        Failure("no temperature", False, refused="temperature"),
+        "ok",
+    ]
+
+    def attempt() -> Failure | str:
+        time.sleep(0.01)
+        return outcomes.pop(0)
+
+    found = run_with_retries(RetryPolicy(max_tries=1), "m", attempt, lambda f: bool(f.refused))
+    assert found.value == "ok"
+    assert 0.02 <= found.waited_s < 0.5
+    with pytest.raises(RefusedError, match="m: bad request"):
+        run_with_retries(RetryPolicy(), "m", lambda: Failure("bad request", False))
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,9 @@
     │   └── RenderingError     no OpenGL to draw with
     ├── ModelError             the model could not answer; the episode is unscored
     │   ├── ModelConfigError   unknown model, missing extra, missing key: no retry helps
-    │   └── ProviderError      the provider failed after all retries
+    │   ├── ProviderError      the provider failed after all retries
+    │   │   └── RefusedError   the provider refuses the request as it is: no waiting helps
+    │   └── CassetteError      the recorded calls do not fit what is asked now
     └── RecordError            a run folder is missing, damaged or of another version
         └── ReplayError        a replay left the recorded path
 
@@ -63,6 +65,14 @@ class ModelConfigError(ModelError):
 
 class ProviderError(ModelError):
     """The provider failed after all retries."""
+
+
+class RefusedError(ProviderError):
+    """The provider refuses the request as it is; unlike a fault, no waiting helps."""
+
+
+class CassetteError(ModelError):
+    """The recorded calls do not fit what is asked now: names the call and shows the difference."""
 
 
 class RecordError(AdamoError):

@@ -6,16 +6,20 @@ import json
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import httpx2
     from pydantic_ai.models.openai import OpenAIChatModel
 
 
-def compatible_client(model: str, base_url: str, key: str) -> OpenAIChatModel:
+def compatible_client(
+    model: str, base_url: str, key: str, http: httpx2.AsyncClient
+) -> OpenAIChatModel:
     """Make a chat-completions client for a server of one's own.
 
     Args:
         model: The model's name at the server.
         base_url: Address of the API, with its ``/v1`` if it has one.
         key: The key; any text if the server needs none.
+        http: What sends the requests.
     """
     from openai.types.chat import ChatCompletion
     from pydantic_ai.exceptions import ModelAPIError
@@ -35,9 +39,11 @@ def compatible_client(model: str, base_url: str, key: str) -> OpenAIChatModel:
             return super()._validate_completion(ChatCompletion.model_construct(**_filled(data)))
 
     # Compatible servers know max_tokens; only some know OpenAI's newer max_completion_tokens.
-    profile = OpenAIModelProfile(openai_chat_supports_max_completion_tokens=False)
+    profile = OpenAIModelProfile(
+        openai_chat_supports_max_completion_tokens=False, supports_json_schema_output=True
+    )
     provider = OpenAICompatibleProvider(
-        "openai-compatible", base_url=base_url, api_key=key, profile=profile
+        "openai-compatible", base_url=base_url, api_key=key, profile=profile, http_client=http
     )
     return CompatibleChatModel(model, provider=provider)
 

@@ -66,6 +66,9 @@ class AIMessage:
 
     text: str
     calls: tuple[ToolCall, ...] = ()
+    kept: str = ""
+    """What the provider wants back with this message (signatures of its thinking), opaque to all
+    others; empty if nothing."""
     role: Literal["ai"] = "ai"
 
 
@@ -76,6 +79,9 @@ class ToolMessage:
     call_id: str
     name: str
     text: str
+    images: tuple[ImagePart, ...] = ()
+    """Pictures that belong to the feedback. A wire whose tool results carry text alone sends them
+    right behind the results, as a human message."""
     role: Literal["tool"] = "tool"
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Protocol
+from typing import Any, Protocol
 
 from adamo.action import ToolSchema
 from adamo.inference.messages import AIMessage, Message
@@ -16,6 +16,7 @@ class ModelKind(StrEnum):
 
     VLM = "vlm"
     RULE_BASED = "rule-based"
+    RANDOM = "random"
     SCRIPTED = "scripted"
     REPLAY = "replay"
 
@@ -28,6 +29,10 @@ class Sampling:
     top_p: float = 0.0
     max_tokens: int = 4000
     """Output tokens at most a message."""
+    exact: bool = False
+    """Send temperature and top-p as they are, and fail where one is refused. Otherwise a top-p of
+    0 is left out at temperature 0 (decoding is greedy without it), and what a server refuses is
+    left out too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,15 +40,20 @@ class Usage:
     """Tokens of one reply, as the provider counts them; 0 for models without tokens."""
 
     input_tokens: int = 0
+    """All of the input, cached or not."""
     output_tokens: int = 0
+    """All of the output, reasoning included."""
     cached_tokens: int = 0
     """Part of the input that a provider cache served."""
+    reasoning_tokens: int = 0
+    """Part of the output that was hidden reasoning."""
 
     def __add__(self, other: Usage) -> Usage:
         return Usage(
             self.input_tokens + other.input_tokens,
             self.output_tokens + other.output_tokens,
             self.cached_tokens + other.cached_tokens,
+            self.reasoning_tokens + other.reasoning_tokens,
         )
 
     @property
@@ -52,16 +62,41 @@ class Usage:
         return self.input_tokens + self.output_tokens
 
 
+class Rung(StrEnum):
+    """How a model is asked for its calls, from the best way down: the ladder."""
+
+    NATIVE = "native"
+    """Tool calls of the provider's API."""
+    LEAKED = "leaked"
+    """The same, but the model writes the call into its text."""
+    SCHEMA = "schema"
+    """No tools: the reply is one JSON step, held to a schema by the server."""
+    REACT = "react"
+    """No tools and no schema: Thought, Action and Action Input as text."""
+
+
 @dataclass(frozen=True, slots=True)
 class Reply:
     """One answer of a model."""
 
     message: AIMessage
     usage: Usage = Usage()
+    """Of all requests that this answer took, a repair turn included."""
     seconds: float = 0.0
-    """Time of the successful request alone."""
+    """Time of the successful requests alone."""
     waited_s: float = 0.0
     """Time lost to failed tries, retries and rate limits; left out of the episode's time cap."""
+    requests: int = 1
+    """Requests that were answered or failed for this answer."""
+    cost_usd: float | None = None
+    """What it cost; None if no price is known."""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """The decoding settings that were in effect: what was sent, not what was wished."""
+    rung: Rung | None = None
+    """How the answer was asked for; None for models without a wire."""
+    unreadable: str = ""
+    """Why the answer is neither a valid call nor a final answer, although the model was asked to
+    repair it; empty if it is one. A counted protocol failure."""
 
 
 class Model(Protocol):

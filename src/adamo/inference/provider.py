@@ -2,62 +2,102 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from threading import Lock
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from adamo.action import ToolSchema
 from adamo.inference.background import run_in_background
-from adamo.inference.endpoint import open_client, parse_endpoint
-from adamo.inference.faults import read_failure
+from adamo.inference.clients import Connection, connect
+from adamo.inference.endpoint import parse_endpoint
+from adamo.inference.exchange import Exchange, sent_settings, watch, watching_client
+from adamo.inference.faults import read_error, read_exchange, refused_setting
 from adamo.inference.messages import Message
-from adamo.inference.model import ModelKind, Reply, Sampling
+from adamo.inference.model import ModelKind, Reply, Rung, Sampling
+from adamo.inference.pricing import cost_usd
 from adamo.inference.retry import Failure, RetryPolicy, run_with_retries
+from adamo.inference.settings import EXACT, Settings
 from adamo.inference.wire import from_usage, from_wire, to_parameters, to_wire
 
 if TYPE_CHECKING:
+    import httpx2
     from pydantic_ai.messages import ModelMessage, ModelResponse
+    from pydantic_ai.models import Model as Client
     from pydantic_ai.models import ModelRequestParameters
-    from pydantic_ai.settings import ModelSettings
 
-_CLIENT_ERRORS = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    LookupError,
-    OSError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-)
-"""What a client library raises over a server's answer: its own errors are RuntimeErrors, and an
-answer that is JSON but no completion ends in any of the others, deep in its reading code."""
+
+@dataclass(slots=True)
+class _Asking:
+    """One answer in the making."""
+
+    messages: Sequence[Message]
+    parameters: ModelRequestParameters
+    sampling: Sampling
+    requests: int = 0
+    """Requests so far, those of failed tries included."""
+    settings: Mapping[str, Any] | None = None
+    """What the last try carried."""
+    seconds: float = 0.0
+    """How long the last try was on the wire."""
 
 
 class ProviderModel:
-    """A model behind a provider's API, or on any OpenAI-compatible server.
+    """A model behind a provider's API, or on a server of one's own.
 
     Its key comes from the environment and is kept by the client library alone.
     """
 
-    def __init__(self, uri: str, retry: RetryPolicy | None = None) -> None:
+    def __init__(
+        self,
+        uri: str,
+        retry: RetryPolicy | None = None,
+        refused: Iterable[str] = (),
+        *,
+        several_calls: bool = False,
+        cache: bool = False,
+    ) -> None:
         """Make the client; nothing is sent yet.
 
         Args:
-            uri: ``openai:NAME``, ``openai:NAME@http://HOST:PORT/v1``, or ``PROVIDER:NAME`` with a
-                provider that pydantic-ai knows.
+            uri: ``openai:NAME``, ``openai-responses:NAME``, ``anthropic:NAME``, ``google:NAME``, or
+                ``PROVIDER:NAME`` with a provider that pydantic-ai knows; with
+                ``@http://HOST:PORT/v1`` behind it for a server of one's own.
             retry: Limits on trying again.
+            refused: Parameters that the server is known to refuse; see `refused`.
+            several_calls: Whether the model may call several tools in one turn.
+            cache: Whether to ask for a prompt cache where it must be asked for and writing it
+                costs extra (Anthropic). Worth it if each prompt begins as the one before.
 
         Raises:
             ModelConfigError: The URI, the provider's package or its key is wrong or missing.
         """
         self._name = uri
+        self._endpoint = parse_endpoint(uri)
         self._retry = retry or RetryPolicy()
-        self._client = open_client(parse_endpoint(uri))
+        self._several_calls = several_calls
+        self._cache = cache
+        self._lock = Lock()
+        self._http: httpx2.AsyncClient | None = None
         self._entered = False
+        self._connection = self._connect()
+        self._settings = Settings(self._connection.wire, refused)
 
     def __repr__(self) -> str:
         """The name alone."""
         return f"ProviderModel({self._name!r})"
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
 
     @property
     def name(self) -> str:
@@ -69,75 +109,165 @@ class ProviderModel:
         """Always a VLM."""
         return ModelKind.VLM
 
+    @property
+    def wire(self) -> str:
+        """How it is spoken to.
+
+        "openai-chat", "openai-responses", "anthropic", "google", or the provider's name.
+        """
+        return self._connection.wire
+
+    @property
+    def pictures_in_results(self) -> bool:
+        """Whether a tool's result may hold pictures; else they follow it as a human message."""
+        return self._connection.pictures_in_results
+
+    @property
+    def refused(self) -> frozenset[str]:
+        """What the server refused by name, mostly parameters, and is no longer sent."""
+        return self._settings.refused
+
     def complete(
-        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+        self,
+        messages: Sequence[Message],
+        tools: Sequence[ToolSchema],
+        sampling: Sampling,
+        *,
+        schema: ToolSchema | None = None,
     ) -> Reply:
         """Ask the provider, trying again while its limits and faults may pass.
+
+        Args:
+            messages: The whole prompt, oldest first.
+            tools: The tools on offer.
+            sampling: Decoding settings.
+            schema: What the text of the answer must be, as JSON, if it must; the server is held to
+                it. Usually without tools.
 
         Raises:
             ProviderError: The request was refused, or failed after all retries.
         """
-        prompt, parameters = to_wire(messages), to_parameters(tools)
-        settings = self._settings(sampling)
+        asking = _Asking(messages, to_parameters(tools, schema), sampling)
         answer = run_with_retries(
-            self._retry, self._name, lambda: self._try(prompt, settings, parameters)
+            self._retry,
+            self._name,
+            lambda: self._try(asking),
+            adapt=lambda failure: bool(failure.refused),
         )
-        message = from_wire(answer.value, messages, {tool.name for tool in tools})
+        names = {tool.name for tool in tools}
+        takes = self._connection.takes_thinking
+        message, leaked = from_wire(
+            answer.value, messages, names, self._source, takes_thinking=takes
+        )
         usage = from_usage(answer.value.usage)
-        return Reply(message, usage, answer.seconds, answer.waited_s)
+        return Reply(
+            message,
+            usage,
+            # The first use of a library takes seconds to load, which is not the model's time.
+            asking.seconds or answer.seconds,
+            answer.waited_s,
+            requests=asking.requests,
+            cost_usd=cost_usd(self._name, usage),
+            settings=asking.settings or {},
+            rung=Rung.LEAKED if leaked else Rung.NATIVE,
+        )
 
     def close(self) -> None:
         """Close the connections; a further call opens new ones."""
-        if self._entered:
-            self._entered = False
-            run_in_background(self._client.__aexit__(None, None, None))
+        with self._lock:
+            http, self._http = self._http, None
+            entered, self._entered = self._entered, False
+        if http is not None:
+            run_in_background(_close(self._connection.client, http, entered=entered))
 
-    def _try(
-        self,
-        prompt: list[ModelMessage],
-        settings: ModelSettings,
-        parameters: ModelRequestParameters,
-    ) -> ModelResponse | Failure:
+    @property
+    def _source(self) -> str:
+        """Who gives the answers: nobody else gets back what was kept of them."""
+        return f"{self._connection.wire}:{self._endpoint.model}"
+
+    def _connect(self) -> Connection:
+        self._http = watching_client(self._retry.timeout_s)
+        return connect(self._endpoint, self._http)
+
+    def _try(self, asking: _Asking) -> ModelResponse | Failure:
+        exchange = Exchange(required=EXACT if asking.sampling.exact else ())
+        settings = self._settings.wanted(
+            asking.sampling,
+            with_tools=bool(asking.parameters.function_tools),
+            several_calls=self._several_calls,
+        )
+        prompt = to_wire(
+            asking.messages, self._connection, self._source, one_system=self._settings.one_system
+        )
+        outcome: ModelResponse | Failure
         try:
-            return run_in_background(self._request(prompt, settings, parameters))
-        except _CLIENT_ERRORS as error:
-            # Handed on as text: the exception itself holds the request, and with it the key.
-            return read_failure(error)
+            outcome = run_in_background(
+                self._request(prompt, asking.parameters, settings, exchange)
+            )
+        except Exception as error:
+            # The libraries' errors have no common base, and an answer that is JSON but no
+            # completion ends in any error at all, deep in their reading code. It is handed on as
+            # text: the exception itself holds the request, and with it the key.
+            outcome = read_error(error)
+        asking.requests += exchange.requests or 1
+        # Not every provider's library can be watched: then it is believed.
+        asking.settings = sent_settings(exchange.sent) or settings
+        asking.seconds = exchange.seconds
+        if exchange.withheld:
+            return _inexact(f"The client library does not send {exchange.withheld[0]}.")
+        # What the bytes say goes before what the library made of them.
+        failure = read_exchange(exchange)
+        if failure is None:
+            return outcome
+        if asking.sampling.exact and refused_setting(exchange, EXACT):
+            return _inexact(failure.text)
+        return replace(failure, refused=self._settings.take_refusal(exchange, asking.sampling))
 
     async def _request(
         self,
         prompt: list[ModelMessage],
-        settings: ModelSettings,
         parameters: ModelRequestParameters,
+        settings: Mapping[str, Any],
+        exchange: Exchange,
     ) -> ModelResponse:
         from pydantic_ai.direct import model_request
+        from pydantic_ai.settings import ModelSettings
 
-        if not self._entered:
-            self._entered = True
-            await self._client.__aenter__()
+        watch(exchange)
+        client = await self._open()
+        # A provider without such a setting would warn at every call.
+        unknown = client.unsupported_settings
+        known = {name: value for name, value in settings.items() if name not in unknown}
+        timeout_s = self._retry.timeout_s
+        # The library's own retries would hide lost time in the time of the call.
+        limits = ModelSettings(max_retries=0, timeout=timeout_s, request_timeout=timeout_s)
+        if self._cache and self.wire == "anthropic":
+            limits["cache"] = True
         return await model_request(
-            self._client, prompt, model_settings=settings, model_request_parameters=parameters
+            client,
+            prompt,
+            model_settings=cast(ModelSettings, {**limits, **known}),
+            model_request_parameters=parameters,
         )
 
-    def _settings(self, sampling: Sampling) -> ModelSettings:
-        """The settings of a request.
+    async def _open(self) -> Client:
+        """The client, ready to send; made anew after it was closed."""
+        with self._lock:
+            if self._http is None:
+                self._connection = self._connect()
+            client, first = self._connection.client, not self._entered
+            self._entered = True
+        if first:
+            await client.__aenter__()
+        return client
 
-        At temperature 0 a top-p of 0 is left out: decoding is greedy without it, and several
-        servers refuse the value.
-        """
-        settings: dict[str, Any] = {
-            "temperature": sampling.temperature,
-            "top_p": sampling.top_p,
-            "max_tokens": sampling.max_tokens,
-            "parallel_tool_calls": False,
-            # The library's own retries would hide lost time in the time of the call.
-            "max_retries": 0,
-            "timeout": self._retry.timeout_s,
-            "request_timeout": self._retry.timeout_s,
-        }
-        if sampling.temperature == 0.0 and sampling.top_p == 0.0:
-            del settings["top_p"]
-        # A provider without such a setting would warn at every call.
-        for name in self._client.unsupported_settings & settings.keys():
-            del settings[name]
-        return settings  # type: ignore[return-value]
+
+async def _close(client: Client, http: httpx2.AsyncClient, *, entered: bool) -> None:
+    if entered:
+        await client.__aexit__(None, None, None)
+    await http.aclose()
+
+
+def _inexact(text: str) -> Failure:
+    fix = "These exact settings cannot be had of this model: use `--profile paper`."
+    return Failure(f"{text} {fix}", False)

@@ -9,7 +9,9 @@ _NAMES = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
 _SHORTEST = 6
 """Shorter values are no keys, and redacting them would mangle ordinary words."""
 
-_SHAPES = re.compile(r"(?:\b[rs]k-[\w*.\-]{4,}|\bBearer\s+[^\s'\"]+)")
+_SHAPES = re.compile(
+    r"\b[rs]k-[\w*.\-]{4,}|\bAIza[\w*.\-]{4,}|\bya29\.[\w*.\-]{4,}|\bBearer\s+[^\s'\"]+"
+)
 """What keys look like, also masked ones: servers quote part of a wrong key in their errors."""
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from adamo.errors import ConfigError, ProviderError
+from adamo.errors import ConfigError, ProviderError, RefusedError
 
 T = TypeVar("T")
 
@@ -57,6 +57,8 @@ class Failure:
     retryable: bool
     retry_after_s: float | None = None
     """Seconds that the server asked to wait."""
+    refused: str = ""
+    """Setting that the server refuses by name; empty if it complains of something else."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +71,10 @@ class Success(Generic[T]):
 
 
 def run_with_retries(
-    policy: RetryPolicy, name: str, attempt: Callable[[], T | Failure]
+    policy: RetryPolicy,
+    name: str,
+    attempt: Callable[[], T | Failure],
+    adapt: Callable[[Failure], bool] = lambda failure: False,
 ) -> Success[T]:
     """Try until an attempt succeeds or the policy says stop.
 
@@ -77,24 +82,30 @@ def run_with_retries(
         policy: The limits.
         name: Name of the model, for the error.
         attempt: One try; returns its value or why it failed.
+        adapt: Told of each failure; true if it changed what the next attempt asks for, which then
+            follows at once and is no retry of the same. It must not be true for ever.
 
     Raises:
-        ProviderError: The last failure, if it was final or the limits are used up.
+        RefusedError: The last failure was final.
+        ProviderError: The limits are used up; its text tells the last failure.
     """
     begin = time.monotonic()
-    for tries in range(1, policy.max_tries + 1):
+    failures = 0
+    while True:
         start = time.monotonic()
         outcome = attempt()
         if not isinstance(outcome, Failure):
             return Success(outcome, time.monotonic() - start, start - begin)
+        if adapt(outcome):
+            continue
         if not outcome.retryable:
-            raise ProviderError(f"{name}: {outcome.text}")
+            raise RefusedError(f"{name}: {outcome.text}")
+        failures += 1
         lost_s = time.monotonic() - begin
-        pause_s = policy.pause_s(tries, outcome.retry_after_s)
-        if tries == policy.max_tries or lost_s + pause_s > policy.max_wait_s:
-            raise ProviderError(f"{name}: {_last_words(policy, outcome, tries, lost_s)}")
+        pause_s = policy.pause_s(failures, outcome.retry_after_s)
+        if failures == policy.max_tries or lost_s + pause_s > policy.max_wait_s:
+            raise ProviderError(f"{name}: {_last_words(policy, outcome, failures, lost_s)}")
         time.sleep(pause_s)
-    raise AssertionError("unreachable: the last try returns or raises")
 
 
 def _last_words(policy: RetryPolicy, failure: Failure, tries: int, lost_s: float) -> str:
