@@ -5,20 +5,23 @@ from __future__ import annotations
 import importlib.util
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from adamo.errors import ModelConfigError
+from adamo.errors import AdamoError, ModelConfigError
 from adamo.inference.endpoint import NO_REMOTE
 from adamo.inference.model import ModelKind
 from adamo.inference.registry import create_model
 
 
-@pytest.mark.parametrize("uri", ["", "gpt", "nosuch:thing", "scripted", "scripted:", "replay:run"])
+@pytest.mark.parametrize(
+    "uri", ["", "gpt", "nosuch:thing", "scripted", "scripted:", "cassette:", "replay:run"]
+)
 def test_an_unknown_model_is_refused_with_a_list_of_the_known(uri: str) -> None:
     with pytest.raises(ModelConfigError) as caught:
         create_model(uri)
-    for known in ("baseline", "scripted:FILE.json", "replay:RUN_DIR", "openai:NAME"):
+    for known in ("baseline", "random:SEED", "scripted:FILE.json", "cassette:DIR", "openai:NAME"):
         assert known in str(caught.value)
 
 
@@ -26,6 +29,18 @@ def test_the_baseline_is_rule_based() -> None:
     model = create_model("baseline")
     assert model.name == "baseline"
     assert model.kind is ModelKind.RULE_BASED
+
+
+def test_a_random_player_is_made_from_its_seed() -> None:
+    for uri in ("random", "random:7"):
+        assert create_model(uri).kind is ModelKind.RANDOM
+    with pytest.raises(ModelConfigError, match="random:7"):
+        create_model("random:often")
+
+
+def test_a_cassette_that_is_not_there_is_a_plain_error(tmp_path: Path) -> None:
+    with pytest.raises(AdamoError, match="nowhere"):
+        create_model(f"cassette:{tmp_path / 'nowhere'}")
 
 
 @pytest.mark.parametrize(
@@ -56,7 +71,7 @@ def test_the_switch_lets_loopback_through_without_a_key(
     monkeypatch.setenv(NO_REMOTE, "1")
     monkeypatch.delenv("OPENAI_API_KEY", raising=False)
     uri = f"openai:tiny@http://{host}/v1"
-    model = create_model(uri)
+    model = create_model(uri, tools="native")
     assert model.name == uri
     assert model.kind is ModelKind.VLM
 
@@ -92,7 +107,6 @@ def test_a_missing_extra_names_the_command(monkeypatch: pytest.MonkeyPatch) -> N
         ("openai:tiny@http://127.0.0.1:9/v1?key=hush-hush", "OPENAI_API_KEY"),
         ("openai:tiny@http://127.0.0.1:port/v1", "malformed"),
         ("openai:tiny@http://", "malformed"),
-        ("anthropic:claude@http://127.0.0.1:9/v1", "Only openai:"),
         ("openai:@http://127.0.0.1:9/v1", "PROVIDER:NAME"),
     ],
 )
@@ -105,7 +119,7 @@ def test_a_bad_address_is_refused_and_never_repeated(uri: str, fix: str) -> None
 
 def test_importing_inference_loads_no_provider_library() -> None:
     code = (
-        "import sys, adamo.inference.registry, adamo.inference.provider, adamo.inference.scripted;"
+        "import sys, adamo.inference.registry, adamo.inference.provider, adamo.inference.probe;"
         "sys.exit('pydantic_ai' in sys.modules or 'openai' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
