@@ -10,6 +10,7 @@ from adamo.action import Drop, Look, Pick, ToolSchema, Walk, tool_schema
 from adamo.geometry import Vec3, wrap_angle
 from adamo.inference.baseline import BaselineModel
 from adamo.inference.messages import (
+    AIMessage,
     HumanMessage,
     Message,
     SystemMessage,
@@ -19,6 +20,7 @@ from adamo.inference.messages import (
 from adamo.inference.model import Sampling
 
 TOOLS: list[ToolSchema] = [tool_schema(action) for action in (Look, Walk, Pick, Drop)]
+_NOTE = {"note": {"type": "string"}, "confidence": {"type": "number"}}
 INSTRUCTIONS = (
     "- The room spans x from -3 to 3 and y from -5 to 3. Its four corner areas are the 1 x 1 m "
     'squares in the corners of the floor.\n- "Near" and "next to" mean: centres within 0.3 m '
@@ -133,7 +135,7 @@ class TextRoom:
             text = self._act(call.name, arguments)
             told: list[Message] = [message, ToolMessage(call.id, call.name, text)]
             if call.name == "Look":
-                told.append(HumanMessage((TextPart("The new view."),)))
+                told.append(HumanMessage((TextPart("New view after your Look."),)))
             self.steps.append(tuple(told))
         raise AssertionError(f"no answer after {cap} steps: {self.steps[-1]}")
 
@@ -180,3 +182,106 @@ class TextRoom:
             for tag, item in self.items.items()
             if item.support == "on the floor"
         }
+
+
+def with_notes(tool: ToolSchema) -> ToolSchema:
+    """A tool that wants a note and a confidence as its first arguments."""
+    own = tool.parameters
+    properties = {**_NOTE, **own.get("properties", {})}
+    required = [*_NOTE, *own.get("required", [])]
+    parameters = {**own, "properties": properties, "required": required}
+    return ToolSchema(tool.name, tool.description, parameters)
+
+
+FINISH = ToolSchema(
+    "Finish",
+    "End the episode.",
+    {
+        "type": "object",
+        "properties": {n: {"type": "string"} for n in ("asked", "verified", "unseen", "answer")},
+        "required": ["asked", "verified", "unseen", "answer"],
+    },
+)
+SEVERAL = "\n- You may make several calls in one turn, up to 8, when each follows."
+
+
+@dataclass(slots=True)
+class LeanRoom(TextRoom):
+    """The same room, told as what changed; each of the other habits can be switched off."""
+
+    notes: bool = True
+    finish: bool = True
+    plan: bool = True
+    told: list[Message] = field(default_factory=list)
+    known: dict[str, str] = field(default_factory=dict)
+    turns: int = 0
+    finished: Mapping[str, object] = field(default_factory=dict)
+
+    @property
+    def tools(self) -> list[ToolSchema]:
+        """The tools on offer."""
+        offered = [*TOOLS, FINISH] if self.finish else TOOLS
+        return [with_notes(tool) for tool in offered] if self.notes else offered
+
+    def messages(self) -> list[Message]:
+        """The prompt so far."""
+        if not self.told:
+            parts = (TextPart(self.instruction), TextPart(self._view()))
+            self.told = [SystemMessage(INSTRUCTIONS + SEVERAL * self.plan), HumanMessage(parts)]
+        return list(self.told)
+
+    def run(self, cap: int = 60) -> LeanRoom:
+        """Let the baseline play to its end."""
+        for _ in range(cap):
+            message = BaselineModel().complete(self.messages(), self.tools, Sampling()).message
+            self.turns += 1
+            if not message.calls or message.calls[0].name == "Finish":
+                self.finished = dict(message.calls[0].arguments or {}) if message.calls else {}
+                self.answer = str(self.finished.get("answer", message.text))
+                return self
+            self.told.append(message)
+            self._turn(message)
+        raise AssertionError(f"no answer after {cap} turns: {self.told[-1]}")
+
+    def _turn(self, message: AIMessage) -> None:
+        results: list[tuple[str, str, str]] = []
+        for call in message.calls:
+            arguments = dict(call.arguments or {})
+            assert ("note" in arguments) == ("confidence" in arguments) == self.notes
+            assert bool(message.text) != self.notes
+            if results and not results[-1][2].startswith("Done"):
+                results.append((call.id, call.name, "Not executed: a surprise before."))
+                continue
+            own = {k: v for k, v in arguments.items() if k not in ("note", "confidence")}
+            self.calls.append((call.name, own))
+            text = self._act(call.name, own)
+            seen = "\n\n" + self._view(now=call is message.calls[-1]) if text[0] == "D" else ""
+            results.append((call.id, call.name, text + seen))
+        self.told += [ToolMessage(*result) for result in results]
+
+    def _view(self, now: bool = True) -> str:
+        """What is new or has moved since it was last told, the body, and what is in view."""
+        lines: dict[str, list[str]] = {"New in view": [], "Moved": []}
+        in_view = []
+        for item in self.items.values():
+            to = item.position - self.body
+            turn = wrap_angle(math.atan2(to.y, to.x) - self.heading_rad)
+            if item.tag == self.held or abs(turn) >= _HALF_VIEW_RAD:
+                continue
+            in_view.append(f"{item.tag} [10, 10, 40, 40]" if self.full else item.tag)
+            p = item.position
+            place = f"({p.x:.3f}, {p.y:.3f}, {p.z:.3f})"
+            line = f"- {item.tag}: center {place}, volume {item.volume_cm3:.1f} cm3"
+            if self.known.get(item.tag) != line:
+                lines["Moved" if item.tag in self.known else "New in view"].append(line)
+            self.known[item.tag] = line
+        text = [f"{title}:\n" + "\n".join(told) for title, told in lines.items() if told]
+        p = self.body
+        you = f"You: position ({p.x:.2f}, {p.y:.2f}, {p.z:.2f})"
+        if self.full:
+            degrees = round(math.degrees(self.heading_rad)) % 360
+            you += f", heading {degrees} deg, hand: {self.held or 'empty'}"
+        if now:
+            you += f"\n\n# The view now\nIn view: {', '.join(in_view) or 'none'}"
+            you += "\nReference points: none"
+        return "\n".join([*text, you])

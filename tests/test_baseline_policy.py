@@ -93,7 +93,7 @@ def test_notes_have_evidence_conclusion_and_next_step():
     room = TextRoom(PROMPT["T8"]).run()
     for step in room.steps:
         assert isinstance(step[0], AIMessage)
-        for word in ("Evidence:", "Conclusion:", "Next:", "Memory:"):
+        for word in ("Evidence:", "Conclusion:", "Next:", "[#"):
             assert word in step[0].text
 
 

@@ -2,12 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
+from tests.baseline_rewordings import REWORDINGS
 
+from adamo.action import ToolSchema
 from adamo.assemble import run_episode
+from adamo.benchmark.tasks import TASKS
 from adamo.cognition.termination import TerminationReason
+from adamo.inference.baseline import BaselineModel
+from adamo.inference.messages import HumanMessage, Message, TextPart
+from adamo.inference.model import Reply, Sampling
 
+PROMPT = {task.id: task.prompt for task in TASKS}
 SEM = [f"T{n}" for n in range(1, 14)]
+
+
+class Reworded(BaselineModel):
+    """The baseline, told a task in other words, so that the task's checker scores it."""
+
+    def __init__(self, words: str, other_words: str) -> None:
+        super().__init__()
+        self._words, self._other = words, other_words
+
+    def complete(
+        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+    ) -> Reply:
+        told = [self._reword(m) if isinstance(m, HumanMessage) else m for m in messages]
+        return super().complete(told, tools, sampling)
+
+    def _reword(self, message: HumanMessage) -> HumanMessage:
+        own = TextPart(self._words)
+        parts = tuple(TextPart(self._other) if p == own else p for p in message.parts)
+        return HumanMessage(parts)
 
 
 @pytest.mark.parametrize("task", SEM)
@@ -37,8 +65,26 @@ def test_a_short_memory(engine, k):
     assert result.completion == 1.0
 
 
+@pytest.mark.parametrize("task", ["T1", "T3", "T4", "T7", "T8", "T10", "T12"])
+def test_rewordings_are_played_to_the_same_end(engine, task):
+    player = Reworded(PROMPT[task], REWORDINGS[task][-1])
+    result = run_episode(task=task, model=player, labeling="sem", engine=engine)
+    assert result.completion == 1.0, result.answer
+
+
 def test_an_instruction_it_does_not_understand_ends_at_once(engine):
     result = run_episode("Sing a song", model="baseline", engine=engine)
     assert sum(result.calls.values()) == 0
     assert "sing" in result.answer
     assert result.termination is TerminationReason.ANSWERED
+
+
+@pytest.mark.parametrize("labeling", ["sem", "opaq"])
+@pytest.mark.parametrize("task", ["T3", "T8", "T10", "T14"])
+def test_the_lean_profile_takes_fewer_calls_to_the_same_end(engine, task, labeling):
+    result = run_episode(
+        task=task, model="baseline", labeling=labeling, profile="lean", engine=engine
+    )
+    assert result.completion == 1.0, result.answer
+    assert result.model_calls < result.steps + 1 or result.steps == 1
+    assert result.missing_notes == 0

@@ -12,13 +12,14 @@ from adamo.geometry import Camera, Vec3
 from adamo.inference.baseline.colours import shares
 from adamo.inference.baseline.drawn import drawn_over
 from adamo.inference.baseline.grammar import understand
-from adamo.inference.baseline.grounding import classify, degree, remembered
+from adamo.inference.baseline.grounding import classify, degree, thing_of
 from adamo.inference.baseline.print_marks import print_share
 from adamo.inference.baseline.prototypes import prototypes
 from adamo.inference.baseline.reading import Body, Listed, Prompt, Room
 from adamo.inference.baseline.sight import Sight
+from adamo.inference.baseline.silhouettes import misfits
 from adamo.inference.baseline.view import camera_of
-from adamo.inference.baseline.vision import sights
+from adamo.inference.baseline.vision import boxed, sights
 from adamo.inference.messages import ImagePart
 
 WOOD = (70, 105, 140)
@@ -44,7 +45,7 @@ def picture() -> np.ndarray:
 def prompt(frame: np.ndarray, things: list[Listed], quality: int = 90) -> Prompt:
     data = cv2.imencode(".jpg", frame, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
     image = ImagePart(data, "image/jpeg", frame.shape[1], frame.shape[0])
-    return Prompt("", Room(), tuple(things), (), BODY, image, "", None)
+    return Prompt("", Room(), tuple(things), (), BODY, image)
 
 
 def listed(tag: str, at: Vec3, radius_px: int, volume_cm3: float = 800.0) -> Listed:
@@ -134,22 +135,59 @@ def test_the_camera_follows_from_the_text():
     assert math.degrees(camera.fov_y_rad) == pytest.approx(65, abs=1.5)
 
 
-def test_sizes_are_measured_in_metres():
+@pytest.mark.parametrize("name", ["Plate", "PeanutButter", "WineBottle", "Screwdriver"])
+def test_a_silhouette_fits_its_own_kind(name):
+    prototype, at = prototypes()[name], Vec3(0.0, -0.8, 0.85)
+    length, width, height = prototype.size_m
+    sides = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
+    if length == width:
+        turns = np.arange(0, 2 * math.pi, 0.1)
+        rim = np.stack([np.cos(turns), np.sin(turns), np.ones(len(turns))], axis=1) / 2
+        sides = np.concatenate([rim, rim * (1, 1, -1)])
+    pixels = CAMERA.project(at.array() + sides * (length, width, height))[:, :2]
+    left, top = (int(v) for v in pixels.min(axis=0))
+    right, bottom = (int(v) for v in pixels.max(axis=0))
+    found = misfits(Listed("7", at, prototype.volume_cm3, (left, top, right, bottom)), CAMERA)
+    assert found[name] < 0.2
+    assert found[name] <= min(found.values()) + 0.2
+
+
+def _framed(frame: np.ndarray, thing: Listed, colour: tuple[int, int, int]) -> None:
+    """The box that is drawn around a thing: a bright line with a dark rim on both sides."""
+    assert thing.box_px
+    left, top, right, bottom = thing.box_px
+    for out, ink in ((3, (22, 18, 16)), (2, colour), (1, (22, 18, 16))):
+        cv2.rectangle(frame, (left - out, top - out), (right + out - 1, bottom + out - 1), ink, 1)
+
+
+def test_boxes_that_the_text_leaves_out_are_found_in_the_frame():
     frame = picture()
-    places = [Vec3(x, y, 0.8) for x in (-0.4, 0.4) for y in (-1.7, -1.3, -0.7, -0.3)]
-    things = [listed(str(n), place, 12) for n, place in enumerate(places)]
-    at = Vec3(0.0, -1.0, 0.8)
-    radius_px = round(0.125 * CAMERA.focal_px / at.distance(CAMERA.position))
-    sight = sights(prompt(frame, [*things, listed("9", at, radius_px)]))["9"]
-    assert sight.width_m == pytest.approx(0.25, rel=0.08)
+    places = [Vec3(x, y, 0.8) for x in (-0.4, 0.4) for y in (-1.5, -1.1, -0.6)]
+    things = [listed(str(n), place, 18 + 3 * n) for n, place in enumerate(places)]
+    for n, thing in enumerate(things):
+        disc(frame, thing, ("red", "white", "blue")[n % 3])
+        _framed(frame, thing, ((60, 240, 30), (64, 160, 255), (208, 92, 255))[n % 3])
+    bare = [Listed(t.tag, t.position, t.volume_cm3) for t in things]
+    found = {thing.tag: thing.box_px for thing in boxed(prompt(frame, bare))}
+    for thing in things:
+        box = found[thing.tag]
+        assert box is not None
+        assert thing.box_px is not None
+        assert max(abs(a - b) for a, b in zip(box, thing.box_px, strict=True)) <= 3
+    sight = sights(prompt(frame, bare))["0"]
+    assert sight.share("red") > 0.9
+
+
+def test_where_no_box_is_drawn_none_is_found():
+    bare = [Listed("1", Vec3(0.0, -0.8, 0.8), 800.0)]
+    assert boxed(prompt(picture(), bare))[0].box_px is None
+    assert sights(prompt(picture(), bare)) == {}
 
 
 def test_a_broken_picture_shows_nothing():
     thing = listed("1", Vec3(0.0, -0.8, 0.8), 40)
     told = prompt(picture(), [thing])
-    broken = Prompt(
-        "", Room(), told.things, (), BODY, ImagePart(b"no picture", "image/jpeg", 8, 8), "", None
-    )
+    broken = Prompt("", Room(), told.things, (), BODY, ImagePart(b"no picture", "image/jpeg", 8, 8))
     assert sights(broken) == {}
 
 
@@ -165,8 +203,9 @@ def test_volume_alone_tells_extremes(name):
 
 
 def test_size_and_colour_tell_a_plate_from_binoculars():
-    plate = Sight(3000, {"red": 0.6, "white": 0.4}, width_m=0.25, extent_m=0.115, pitch_rad=0.35)
-    black = Sight(3000, {"black": 0.9, "grey": 0.1}, width_m=0.19, extent_m=0.125, pitch_rad=0.35)
+    others = dict.fromkeys(prototypes(), 4.0)
+    plate = Sight(3000, {"red": 0.6, "white": 0.4}, misfits=others | {"Plate": 0.3})
+    black = Sight(3000, {"black": 0.9, "grey": 0.1}, misfits=others | {"Binoculars": 0.3})
     assert classify("7", 1875, plate)["Plate"] > 0.6
     assert classify("7", 2292, black)["Binoculars"] > 0.6
 
@@ -175,6 +214,6 @@ def test_descriptions_are_weighed_against_pixels():
     blue = Sight(pixels=900, colours={"blue": 0.9, "grey": 0.1}, roundness=0.95)
     red = Sight(pixels=900, colours={"red": 0.9, "grey": 0.1}, roundness=0.95)
     wish = understand("Pick the blue circular object").goals[0].target
-    thing = remembered(Listed("7", Vec3(0, 0, 0.8), 800.0), blue)
+    thing = thing_of("7", Vec3(0, 0, 0.8), 800.0)
     assert degree(wish, thing, blue, [thing]) > 0.5
     assert degree(wish, thing, red, [thing]) < 0.3

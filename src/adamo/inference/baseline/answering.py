@@ -4,6 +4,36 @@ from __future__ import annotations
 
 from adamo.inference.baseline.goals import Goal, Plan, Relation
 from adamo.inference.baseline.memory import Job, Memory, Status
+from adamo.inference.baseline.searching import Stage
+from adamo.inference.baseline.steps import Finish
+
+_SURE = 0.5
+_NOTHING_FOUND = 0.6
+"""How sure it is that what it looked for all over is not there."""
+
+
+def finish(plan: Plan, memory: Memory, stage: Stage) -> Finish:
+    """The end of an episode: the answer, what it rests on, and what is not known.
+
+    Args:
+        plan: What was asked.
+        memory: What was done.
+        stage: How far the search went.
+    """
+    done = [job for job in memory.jobs if job.status is Status.DONE]
+    said = [f"{job.tag} {_place(plan.goals[job.goal])}" for job in done]
+    verified = f"by the feedback: {', '.join(said)}" if said else "nothing"
+    unseen = "nothing that matters" if stage is Stage.OVER else "parts of the room not looked at"
+    unsure = [job.tag for job in done if _fit(job, memory) < _SURE]
+    if unsure:
+        unseen += f"; not sure that {_and(unsure)} is what was meant"
+    sure = min((_fit(job, memory) for job in done), default=_NOTHING_FOUND)
+    confidence = round(min(max(sure, 0.05), 0.98), 2)
+    return Finish(final_answer(plan, memory), verified, unseen, confidence)
+
+
+def _fit(job: Job, memory: Memory) -> float:
+    return memory.fits.get(("goal", job.goal), {}).get(job.tag, 0.0)
 
 
 def final_answer(plan: Plan, memory: Memory) -> str:

@@ -1,42 +1,90 @@
-"""What the model believes now: its last note, brought up to date with the newest prompt."""
+"""What the model believes now: its notes and all other messages put together, and the new view."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from adamo.inference.baseline.goals import Description, Plan, Relation
-from adamo.inference.baseline.grounding import degree, remembered
-from adamo.inference.baseline.memory import Job, Memory, Slot, Status, Thing, read
-from adamo.inference.baseline.placing import place_reached
+from adamo.inference.baseline import ledger
+from adamo.inference.baseline.closeups import closeup_sight
+from adamo.inference.baseline.goals import Description, Plan
+from adamo.inference.baseline.grounding import degree, kind_of, thing_of
+from adamo.inference.baseline.happenings import FAR_M, happened
+from adamo.inference.baseline.memory import Memory, Search, Slot, Thing
 from adamo.inference.baseline.prototypes import class_of
-from adamo.inference.baseline.reading import Event, Listed, Prompt
+from adamo.inference.baseline.reading import Event, Prompt, Turn
 from adamo.inference.baseline.sight import Sight
-from adamo.inference.baseline.vision import sights
+from adamo.inference.baseline.vision import boxed, sights
+from adamo.inference.baseline.words import WordReader
 
-MAX_TRIES = 4
-"""Failed picks and drops of one thing, after which it is given up."""
+_NEVER_M = 99.0
+_CLOSER = 0.9
+"""A view from less than this share of the former distance replaces what was believed."""
 
 
-def up_to_date(prompt: Prompt, plan: Plan) -> Memory:
-    """Read the last note and add what happened and what is seen since.
+def recalled(prompt: Prompt, plan: Plan) -> Memory:
+    """All that notes, feedback and lists say, without a look at the frame.
 
     Args:
         prompt: The whole prompt.
         plan: What the instruction asks for.
     """
-    memory = read(prompt.note)
-    event = prompt.event
-    if not prompt.note or (event and event.name == "Look" and event.outcome != "refused"):
-        _see(prompt, plan, memory)
-    else:
-        _keep(prompt, memory)
-    if event:
-        _happened(event, prompt, plan, memory)
+    memory = Memory()
+    turns = since_whole(prompt.turns)
+    memory.things.update(ledger.things_noted(turn.note for turn in turns))
+    for tag, listed in prompt.told.items():
+        memory.things[tag] = thing_of(tag, listed.position, listed.volume_cm3)
+    memory.seen_m.update(prompt.told_from_m)
+    names = {ledger.short_of(tag): tag for tag in memory.things}
+    for number, turn in enumerate(turns, len(prompt.turns) - len(turns) + 1):
+        entry = ledger.read(turn.note)
+        newer = {tag for tag, at in prompt.told_at.items() if at >= number}
+        ledger.apply(entry, memory, names, newer)
+        for tag in memory.kinds.keys() & memory.things.keys():
+            thing = memory.things[tag]
+            memory.things[tag] = thing_of(tag, thing.position, thing.volume_cm3, memory.kinds[tag])
+        judge_by_text(memory, plan)
+        searches = [*entry.searches, *[Search.NONE] * len(turn.events)]
+        for event, search in zip(turn.events, searches, strict=False):
+            happened(event, search, memory, plan, prompt.room)
+    judge_by_text(memory, plan)
     if prompt.body.hand is not None:
         memory.hand = "" if prompt.body.hand == "empty" else prompt.body.hand
     return memory
+
+
+def since_whole(turns: tuple[Turn, ...]) -> tuple[Turn, ...]:
+    """The turns from the last one on whose note holds all that was known."""
+    starts = [index for index, turn in enumerate(turns) if ledger.read(turn.note).whole]
+    return turns[starts[-1] :] if starts else turns
+
+
+def judge_by_text(memory: Memory, plan: Plan) -> None:
+    """Say how well things fit the descriptions that tags alone decide, where that is not known."""
+    everything = tuple(memory.things.values())
+    for slot, description in slots(plan):
+        fits = memory.fits.setdefault(slot, {})
+        for thing in everything:
+            if thing.tag not in fits and told_by_text(description, thing.tag):
+                fits[thing.tag] = degree(description, thing, None, everything)
+
+
+def told_by_text(description: Description, tag: str) -> bool:
+    """Whether the text alone tells if this thing is meant."""
+    if description.ids:
+        return True
+    if description.by_looks:
+        return False
+    return class_of(tag) is not None or not description.classes
+
+
+def needs_pixels(plan: Plan, memory: Memory) -> bool:
+    """Whether looks decide what some goal is about that is still open."""
+    return any(
+        not told_by_text(description, tag)
+        for slot, description in open_slots(plan, memory)
+        for tag in memory.things or ("0",)
+    )
 
 
 def slots(plan: Plan) -> Iterable[tuple[Slot, Description]]:
@@ -47,122 +95,108 @@ def slots(plan: Plan) -> Iterable[tuple[Slot, Description]]:
             yield ("place", index), goal.anchor
 
 
-def _see(prompt: Prompt, plan: Plan, memory: Memory) -> None:
-    """A new frame: its list replaces what was remembered of the same things."""
-    looked_at = _sights(prompt, plan)
-    for thing in memory.things.values():
-        memory.things[thing.tag] = replace(thing, moved=False)
-    before = dict(memory.things)
+def settled(plan: Plan, memory: Memory) -> bool:
+    """Whether it is known of all goals what they are about."""
+    return {job.goal for job in memory.jobs} >= set(range(len(plan.goals)))
+
+
+def open_slots(plan: Plan, memory: Memory) -> Iterable[tuple[Slot, Description]]:
+    """Those of which it is not yet known which things they mean."""
+    known = {job.goal for job in memory.jobs}
+    return ((slot, d) for slot, d in slots(plan) if slot[1] not in known)
+
+
+def look(prompt: Prompt, plan: Plan, memory: Memory, reader: WordReader | None) -> None:
+    """Take in a new view and close-ups.
+
+    Args:
+        prompt: The whole prompt.
+        plan: What the instruction asks for.
+        memory: Is changed.
+        reader: Reads printed words; None to do without.
+    """
+    pixels = needs_pixels(plan, memory)
+    if prompt.fresh and (pixels or _compares(plan, memory)):
+        _measure_distances(prompt, memory)
+    if not pixels:
+        return
+    if prompt.fresh:
+        _see(prompt, plan, memory, sights(prompt, reader))
+    events = prompt.turns[-1].events if prompt.turns else ()
+    for event in events:
+        if event.pictures and event.tag in memory.things:
+            _see_closely(event, prompt, plan, memory, reader)
+
+
+def _compares(plan: Plan, memory: Memory) -> bool:
+    return any(description.compares for _, description in open_slots(plan, memory))
+
+
+def _measure_distances(prompt: Prompt, memory: Memory) -> None:
+    """From how near each listed thing was seen, now and before."""
+    here, now = prompt.body.position, len(prompt.turns)
+    noted = ledger.things_noted(turn.note for turn in since_whole(prompt.turns))
     for listed in prompt.things:
-        memory.things[listed.tag] = _seen(prompt, listed, looked_at.get(listed.tag), before)
+        tag = listed.tag
+        distance = round(listed.position.horizontal_distance(here), 1)
+        is_new = prompt.told_at.get(tag, now) >= now if prompt.lasting else tag not in noted
+        # Notes leave out what was seen from nearby.
+        before = _NEVER_M if is_new else memory.seen_m.get(tag, FAR_M)
+        memory.before_m[tag] = before
+        memory.seen_m[tag] = min(distance, before)
+
+
+def _see(prompt: Prompt, plan: Plan, memory: Memory, looked_at: Mapping[str, Sight]) -> None:
+    """A new view of all that it lists."""
+    closer = {
+        thing.tag: memory.seen_m[thing.tag] < _CLOSER * memory.before_m.get(thing.tag, _NEVER_M)
+        for thing in prompt.things
+    }
+    for listed in prompt.things:
+        tag, sight = listed.tag, looked_at.get(listed.tag)
+        if class_of(tag) is None and sight and closer[tag]:
+            _take_for(tag, kind_of(tag, listed.volume_cm3, sight), memory)
     everything = tuple(memory.things.values())
-    for slot, description in slots(plan):
+    for slot, description in open_slots(plan, memory):
         fits = memory.fits.setdefault(slot, {})
-        for listed in prompt.things:
-            tag = listed.tag
-            fit = degree(description, memory.things[tag], looked_at.get(tag), everything)
-            closer = tag not in before or memory.things[tag].seen_m < 0.9 * before[tag].seen_m
+        for tag, nearer in closer.items():
+            if tag in memory.inspected or told_by_text(description, tag):
+                continue
+            fit = _fit(description, memory.things[tag], looked_at.get(tag), everything)
             # The nearest view is believed; of equally near ones, the most favourable.
-            fits[tag] = fit if closer else max(fit, fits.get(tag, 0.0))
+            fits[tag] = fit if nearer else max(fit, fits.get(tag, 0.0))
 
 
-def _seen(
-    prompt: Prompt, listed: Listed, sight: Sight | None, before: Mapping[str, Thing]
-) -> Thing:
-    thing = remembered(listed, sight)
-    distance = round(listed.position.horizontal_distance(prompt.body.position), 1)
-    if known := before.get(listed.tag):
-        distance = min(distance, known.seen_m)
-    return replace(thing, seen_m=distance)
-
-
-def _keep(prompt: Prompt, memory: Memory) -> None:
-    """The frame is the one already seen: add the things that the note left to the list."""
-    for listed in prompt.things:
-        if listed.tag not in memory.things:
-            memory.things[listed.tag] = remembered(listed, None)
-
-
-def _sights(prompt: Prompt, plan: Plan) -> Mapping[str, Sight]:
-    """Look at the pixels, if any description needs them."""
-    needed = any(
-        not description.ids
-        and (description.by_looks or any(class_of(t.tag) is None for t in prompt.things))
-        for _, description in slots(plan)
-    )
-    return sights(prompt) if needed else {}
-
-
-def _happened(event: Event, prompt: Prompt, plan: Plan, memory: Memory) -> None:
-    tag = str(event.arguments.get("object", ""))
-    refused = event.outcome not in ("done", "corrected")
-    if event.name == "Pick":
-        _picked(event, tag, refused, memory)
-    elif event.name == "Drop":
-        _dropped(event, tag, refused, prompt, plan, memory)
-
-
-def _picked(event: Event, tag: str, refused: bool, memory: Memory) -> None:
-    if not refused or "already in your hand" in event.text:
-        memory.hand = tag
-        return
-    if holds := re.search(r"holds ([^\s;.,]+)", event.text):
-        memory.hand = holds.group(1)
-    _count_try(tag, memory)
-
-
-def _dropped(
-    event: Event, tag: str, refused: bool, prompt: Prompt, plan: Plan, memory: Memory
+def _see_closely(
+    event: Event, prompt: Prompt, plan: Plan, memory: Memory, reader: WordReader | None
 ) -> None:
-    if refused:
-        if "hand is empty" in event.text:
-            memory.hand = ""
-        _count_try(tag, memory)
+    """A close-up shows print and colours; shape and size are told by the view of the room."""
+    tag, volume = event.tag, memory.things[event.tag].volume_cm3
+    box = next((thing.box_px for thing in boxed(prompt) if thing.tag == tag), None)
+    slimness = (box[2] - box[0]) / max(box[3] - box[1], 1) if box else None
+    sight = closeup_sight(event.pictures[-1], slimness, reader)
+    if sight is None:
         return
-    memory.hand = ""
-    thing = memory.things.get(tag)
-    rest = event.point
-    if thing is None or rest is None:
-        _count_try(tag, memory)
-        return
-    moved = replace(thing, position=rest, moved=True)
-    memory.things[tag] = moved
-    job = current_job(tag, memory)
-    if job is None:
-        return
-    goal = plan.goals[job.goal]
-    anchor = anchor_of(job.goal, memory)
-    on_floor = "floor" in event.text.split("rests")[-1]
-    if place_reached(goal.relation, moved, anchor, prompt.room, on_floor):
-        memory.set_job(replace(job, status=Status.DONE))
-    else:
-        _count_try(tag, memory)
+    far = sights(prompt).get(tag)
+    if far:
+        sight = replace(sight, misfits=far.misfits, cut=far.cut, clear=far.clear)
+    _take_for(tag, kind_of(tag, volume, sight), memory)
+    everything = tuple(memory.things.values())
+    for slot, description in open_slots(plan, memory):
+        if not told_by_text(description, tag):
+            fits = memory.fits.setdefault(slot, {})
+            fits[tag] = _fit(description, memory.things[tag], sight, everything)
 
 
-def current_job(tag: str, memory: Memory) -> Job | None:
-    """The first open job of a thing."""
-    return next((j for j in memory.jobs if j.tag == tag and j.status is Status.TODO), None)
+def _take_for(tag: str, kind: str, memory: Memory) -> None:
+    """Remember what a thing behind an opaque tag seems to be."""
+    thing = memory.things[tag]
+    if class_of(tag) is None:
+        memory.kinds[tag] = kind
+        memory.things[tag] = thing_of(tag, thing.position, thing.volume_cm3, kind)
 
 
-def anchor_of(goal: int, memory: Memory) -> Thing | None:
-    """The thing that the targets of a goal shall be near, if it is known."""
-    targets = {job.tag for job in memory.jobs if job.goal == goal}
-    fits = memory.fits.get(("place", goal), {})
-    known = [(fit, tag) for tag, fit in fits.items() if tag not in targets and tag in memory.things]
-    if not known:
-        return None
-    return memory.things[max(known)[1]]
-
-
-def _count_try(tag: str, memory: Memory) -> None:
-    job = current_job(tag, memory)
-    if job is None:
-        return
-    tries = job.tries + 1
-    status = Status.FAILED if tries >= MAX_TRIES else Status.TODO
-    memory.set_job(replace(job, tries=tries, status=status))
-
-
-def is_hold(plan: Plan, job: Job) -> bool:
-    """Whether a job ends in the hand."""
-    return plan.goals[job.goal].relation is Relation.HOLD
+def _fit(
+    description: Description, thing: Thing, sight: Sight | None, everything: tuple[Thing, ...]
+) -> float:
+    return round(degree(description, thing, sight, everything), 2)

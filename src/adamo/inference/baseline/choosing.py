@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from adamo.inference.baseline.beliefs import anchor_of
 from adamo.inference.baseline.goals import Description, Goal, Size
+from adamo.inference.baseline.happenings import anchor_of
 from adamo.inference.baseline.memory import Memory, Thing
 from adamo.inference.baseline.searching import Stage
 

@@ -82,20 +82,19 @@ class Goal:
     furniture: str = ""
     """The furniture's name, for `Relation.SURFACE`."""
 
-    def describe(self) -> str:
-        """The goal in a few words."""
-        target = self.target.text
+    def wish(self) -> str:
+        """What shall happen with the target, as a participle."""
         match self.relation:
             case Relation.HOLD:
-                return f"hold {target}"
+                return "held"
             case Relation.FLOOR:
-                return f"{target} on the floor"
+                return "put on the floor"
             case Relation.CORNER:
-                return f"{target} in a corner of the room"
+                return "put on the floor in a corner of the room"
             case Relation.SURFACE:
-                return f"{target} on the {self.furniture}"
+                return f"put on the {self.furniture}"
             case Relation.NEAR:
-                return f"{target} near {self.anchor.text if self.anchor else 'it'}"
+                return f"put near {self.anchor.text if self.anchor else 'it'}"
 
 
 @dataclass(frozen=True, slots=True)

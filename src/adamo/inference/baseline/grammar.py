@@ -18,10 +18,14 @@ from functools import lru_cache
 from adamo.inference.baseline.goals import Description, Goal, Plan, Relation
 from adamo.inference.baseline.lexicon import Kind, Token, tokenize
 from adamo.inference.baseline.phrases import Cursor, NotUnderstood, noun_phrase, starts_phrase
+from adamo.inference.baseline.rephrasing import rephrased
 
-_VERBS = (Kind.TAKE, Kind.PUT, Kind.BRING)
-_PLACES = (Kind.ON, Kind.IN, Kind.TO, Kind.NEAR, Kind.THERE)
+_VERBS = (Kind.TAKE, Kind.FIND, Kind.PUT, Kind.BRING)
+_PLACES = (Kind.ON, Kind.IN, Kind.TO, Kind.NEAR, Kind.THERE, Kind.HELD)
 _BREAKS = (Kind.THEN, Kind.COMMA, Kind.AND)
+
+
+_EVERYTHING = Description("everything", every=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,13 +52,17 @@ class _Reading:
         self.last = list(things)
 
     def put(self, things: Sequence[Description], place: _Place) -> None:
+        if place.relation is Relation.HOLD:
+            self.take(things)
+            return
         for thing in things:
             known = next((w for w in self.waiting if _same(w, thing)), None)
             if known:
                 self.waiting.remove(known)
             target = known or thing
             self.goals = [g for g in self.goals if g.target != target]
-            self.goals.append(Goal(target, place.relation, place.anchor, place.furniture))
+            anchor = place.anchor and _of_the_same(place.anchor, target)
+            self.goals.append(Goal(target, place.relation, anchor, place.furniture))
         self.last = list(things)
         self.place = place
 
@@ -63,8 +71,19 @@ class _Reading:
         return group[-1:] if token.value in ("it", "this one", "that one") else list(group)
 
     def plan(self) -> Plan:
-        holds = tuple(Goal(thing) for thing in self.waiting)
+        # A hand holds one thing: "any" is one of them here, not all of them.
+        holds = tuple(
+            Goal(replace(thing, every=False) if thing.text.startswith("any ") else thing)
+            for thing in self.waiting
+        )
         return Plan(tuple(self.goals) + holds)
+
+
+def _of_the_same(anchor: Description, target: Description) -> Description:
+    """Read "the larger one" behind "the smaller battery" as the larger battery."""
+    if anchor.size and not anchor.classes and "one" in anchor.text.split():
+        return replace(anchor, classes=target.classes)
+    return anchor
 
 
 def _same(one: Description, other: Description) -> bool:
@@ -84,7 +103,7 @@ def understand(instruction: str) -> Plan:
     Returns:
         The plan; if any part has no meaning, a plan without goals that names this part.
     """
-    tokens = tokenize(instruction)
+    tokens = tokenize(rephrased(instruction))
     unknown = [token.text for token in tokens if token.kind is Kind.UNKNOWN]
     if unknown:
         return Plan(problem="'" + "', '".join(dict.fromkeys(unknown)) + "'")
@@ -102,7 +121,7 @@ def understand(instruction: str) -> Plan:
 
 def _clause(cursor: Cursor, reading: _Reading) -> None:
     if verb := cursor.accept(*_VERBS):
-        while cursor.peek() in (Kind.TAKE, Kind.PUT, Kind.BRING) and verb.kind is not Kind.PUT:
+        while cursor.peek() in _VERBS and verb.kind is not Kind.PUT:
             verb = cursor.next()
         _verb_clause(verb.kind, cursor, reading)
     elif cursor.accept(Kind.AGAIN):
@@ -110,20 +129,43 @@ def _clause(cursor: Cursor, reading: _Reading) -> None:
             raise NotUnderstood("'the same' (nothing was said before)")
         reading.put(_things(cursor, reading), reading.place)
     elif cursor.peek() in _PLACES:
-        place = _place(cursor, reading)
-        while cursor.accept(Kind.COMMA):
-            pass
-        if not cursor.accept(Kind.PUT, Kind.BRING):
-            raise cursor.fail("I expected a verb like 'put'")
-        reading.put(_things(cursor, reading), place)
+        _place_first(cursor, reading)
     elif starts_phrase(cursor) or cursor.peek() is Kind.PRONOUN:
-        things = _things(cursor, reading)
-        cursor.accept(Kind.GOES)
-        if cursor.peek() not in _PLACES:
-            raise cursor.fail("I expected a verb like 'pick' or 'put' before it")
-        reading.put(things, _place(cursor, reading))
+        _things_first(cursor, reading)
     else:
         raise cursor.fail("I know picking things up and putting them down")
+
+
+def _place_first(cursor: Cursor, reading: _Reading) -> None:
+    """Read "on the floor, put the plate", "on the floor: the plate"."""
+    place = _place(cursor, reading)
+    mark = cursor.mark()
+    while cursor.accept(Kind.COMMA) and cursor.peek() in (Kind.ON, Kind.IN, Kind.NEAR):
+        place = _join(cursor, place, _target_place(cursor, cursor.next().kind))
+        mark = cursor.mark()
+    cursor.rewind(mark)
+    while cursor.accept(Kind.COMMA, Kind.THEN):
+        pass
+    if not cursor.accept(Kind.PUT, Kind.BRING) and not starts_phrase(cursor):
+        raise cursor.fail("I expected a verb like 'put'")
+    reading.put(_things(cursor, reading), place)
+
+
+def _things_first(cursor: Cursor, reading: _Reading) -> None:
+    """Read "the plate should be on the floor", or "the plate: put it on the floor"."""
+    things = _things(cursor, reading)
+    cursor.accept(Kind.GOES)
+    if cursor.peek() in _PLACES:
+        reading.put(things, _place(cursor, reading))
+        _further_pairs(cursor, reading)
+        return
+    mark = cursor.mark()
+    while cursor.accept(*_BREAKS):
+        pass
+    if cursor.mark() == mark or cursor.peek() not in (Kind.PUT, Kind.BRING, Kind.TAKE):
+        cursor.rewind(mark)
+        raise cursor.fail("I expected a verb like 'pick' or 'put' before it")
+    reading.last = things
 
 
 def _verb_clause(verb: Kind, cursor: Cursor, reading: _Reading) -> None:
@@ -135,11 +177,13 @@ def _verb_clause(verb: Kind, cursor: Cursor, reading: _Reading) -> None:
             reading.put(reading.waiting or reading.last, place)
         return
     things = _things(cursor, reading)
+    if verb is Kind.FIND:
+        reading.last = things
+        return
     if verb is Kind.TAKE:
-        if cursor.accept(Kind.TO):  # "take the plate to the floor"
-            reading.put(things, _target_place(cursor, Kind.TO))
-        elif cursor.peek() is Kind.THERE:
+        if _is_destination(cursor):
             reading.put(things, _place(cursor, reading))
+            _further_pairs(cursor, reading)
         else:
             reading.take(_with_source(cursor, reading, things))
         return
@@ -154,6 +198,14 @@ def _verb_clause(verb: Kind, cursor: Cursor, reading: _Reading) -> None:
     _further_pairs(cursor, reading)
 
 
+def _is_destination(cursor: Cursor) -> bool:
+    """Behind "take the plate": whether the place is where to take it, not where it is."""
+    if cursor.peek() in (Kind.TO, Kind.THERE, Kind.HELD):
+        return True
+    words = cursor.ahead()
+    return words.startswith(("down ", "onto", "on to", "into"))
+
+
 def _further_pairs(cursor: Cursor, reading: _Reading) -> None:
     """Read "... and the cup next to the plate": the same verb goes on."""
     while cursor.peek() in _BREAKS:
@@ -164,9 +216,25 @@ def _further_pairs(cursor: Cursor, reading: _Reading) -> None:
             cursor.rewind(mark)
             return
         things = _things(cursor, reading)
-        if cursor.peek() not in _PLACES:
+        cursor.accept(Kind.GOES, Kind.BE)
+        if cursor.peek() in _PLACES:
+            reading.put(things, _place(cursor, reading))
+        elif reading.place is not None and cursor.peek() in (*_BREAKS, None):
+            if _is_topic(cursor):  # "... and the cup, put it on the table"
+                cursor.rewind(mark)
+                return
+            reading.put(things, reading.place)  # "... and then the plate"
+        else:
             raise cursor.fail("where to put it?")
-        reading.put(things, _place(cursor, reading))
+
+
+def _is_topic(cursor: Cursor) -> bool:
+    mark = cursor.mark()
+    while cursor.accept(*_BREAKS):
+        pass
+    found = cursor.peek() in _VERBS and cursor.peek(1) is Kind.PRONOUN
+    cursor.rewind(mark)
+    return found
 
 
 def _with_source(cursor: Cursor, reading: _Reading, things: list[Description]) -> list[Description]:
@@ -190,8 +258,7 @@ def _things(cursor: Cursor, reading: _Reading) -> list[Description]:
     if cursor.peek() is Kind.EVERY and cursor.peek(1) in (*_PLACES, Kind.PRONOUN):
         cursor.next()
         cursor.accept(Kind.PRONOUN)
-        if meant := list(reading.waiting or reading.last):
-            return meant
+        return list(reading.waiting or reading.last) or [_EVERYTHING]
     if cursor.peek() is Kind.COUNT and cursor.peek(1) in _PLACES:
         cursor.next()
         if meant := list(reading.waiting or reading.last):
@@ -229,10 +296,12 @@ def _place(cursor: Cursor, reading: _Reading) -> _Place:
         if reading.place is None:
             raise NotUnderstood("'there' (no place was named before)")
         return reading.place
+    if cursor.accept(Kind.HELD):
+        return _Place(Relation.HOLD)
     place = _target_place(cursor, cursor.next().kind)
     while cursor.peek() in _PLACES:
         word = cursor.next()
-        if word.kind is Kind.THERE:
+        if word.kind in (Kind.THERE, Kind.HELD):
             raise cursor.fail("two places for one thing")
         place = _join(cursor, place, _target_place(cursor, word.kind))
     mark = cursor.mark()

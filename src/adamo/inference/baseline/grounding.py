@@ -4,18 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 
+from adamo.geometry import Vec3
 from adamo.inference.baseline.goals import Description, Relation
 from adamo.inference.baseline.memory import Thing
 from adamo.inference.baseline.prototypes import Prototype, class_of, prototypes, size_of
-from adamo.inference.baseline.reading import Listed
 from adamo.inference.baseline.sight import Sight
+from adamo.inference.baseline.words import named_kinds
 
 Beliefs = Mapping[str, float]
 """Probability of each class for one thing."""
 
 _NEAR_SOURCE_M = 0.6
 _FLOOR_BOTTOM_M = 0.1
+_VIVID = {"grey": 0.0, "white": 0.0, "black": 0.5, "brown": 0.5}
+"""How much a colour speaks against glass; all others fully."""
+_SHADING = 0.1
+"""Share of grey or black that says nothing."""
+_READABLE_PX = 600
+"""Pixels from which missing print means something."""
+_PRINT_WEIGHT = 0.7
+_WORD_WEIGHT = 5.0
+_A_WORD = 3
+"""Letters from which what was read is a word."""
 
 
 def classify(tag: str, volume_cm3: float, sight: Sight | None) -> Beliefs:
@@ -40,40 +52,41 @@ def _misfit(prototype: Prototype, volume_cm3: float, sight: Sight | None) -> flo
     misfit = off * off / 2
     if sight is None or sight.pixels < 30:
         return misfit
-    misfit += _shape_misfit(prototype, volume_cm3, sight)
-    return misfit + _colour_misfit(prototype, sight)
-
-
-def _shape_misfit(prototype: Prototype, volume_cm3: float, sight: Sight) -> float:
-    """Compare the extents in the picture with the prototype scaled to the volume, in any turn."""
-    if sight.width_m is None or sight.extent_m is None or sight.cut:
-        return 0.0
-    scale = (max(volume_cm3, 0.1) / prototype.volume_cm3) ** (1 / 3)
-    length, width, height = (side * scale for side in prototype.size_m)
-    best = math.inf
-    for turn in range(7):
-        angle = turn * math.pi / 12
-        cos, sin = math.cos(angle), math.sin(angle)
-        across, along = length * cos + width * sin, length * sin + width * cos
-        seen = height * math.cos(sight.pitch_rad) + along * math.sin(sight.pitch_rad)
-        wide = math.log(max(sight.width_m, 1e-3) / max(across, 1e-3)) / 0.18
-        tall = math.log(max(sight.extent_m, 1e-3) / max(seen, 1e-3)) / 0.18
-        best = min(best, (wide * wide + tall * tall) / 2)
-    return min(best, 12.0)
+    if not sight.cut:
+        misfit += sight.misfits.get(prototype.name, 0.0)
+    looks = _colour_misfit(prototype, sight) + _print_misfit(prototype, sight)
+    return misfit + looks + _word_misfit(prototype, sight)
 
 
 def _colour_misfit(prototype: Prototype, sight: Sight) -> float:
     """How unusual the colours are for the class."""
     if prototype.transparent:
-        return 1.5 * (1 - sight.clear)
+        vivid = sum(_VIVID.get(colour, 1.0) * share for colour, share in sight.colours.items())
+        return (1 - sight.clear) * (1.5 + 3.0 * vivid)
     usual = dict(prototype.colours)
     usual["white"] = max(usual.get("white", 0.0), prototype.white)
     odd = sum(
-        share * (1 - usual.get(colour, 0.0))
+        # Shadows and highlights are on everything.
+        max(0.0, share - (_SHADING if colour in ("grey", "black") else 0.0))
+        * (1 - usual.get(colour, 0.0))
         for colour, share in sight.colours.items()
-        if colour not in ("grey", "black") or share > 0.5
     )
     return 2.5 * odd + 1.5 * sight.clear
+
+
+def _word_misfit(prototype: Prototype, sight: Sight) -> float:
+    """A name that can be read on a thing says what it is, if such things carry their names."""
+    named = named_kinds(sight.words).get(prototype.name, 0.0)
+    return -_WORD_WEIGHT * named * min(1.0, 2 * prototype.label)
+
+
+def _print_misfit(prototype: Prototype, sight: Sight) -> float:
+    """Printed rows speak for what usually carries a label, and a large plain face against it."""
+    if sight.pixels < _READABLE_PX:
+        return 0.0
+    printed = math.tanh(sight.text / 0.08)
+    expected = 0.1 + 0.8 * prototype.label
+    return -_PRINT_WEIGHT * math.log(printed * expected + (1 - printed) * (1 - expected * 0.7))
 
 
 def degree(
@@ -154,8 +167,8 @@ def _white(beliefs: Beliefs, sight: Sight | None) -> float:
     if sight is None or sight.pixels < 30:
         return usual
     share = sight.share("white")
-    if sight.clear > 0.75:  # what shines through glass is not its own
-        share *= 1 - sight.clear
+    # What shines through glass, and its reflections, are not its own.
+    share *= (1 - sight.clear) * (1 - _expect(beliefs, lambda p: float(p.transparent)))
     return _updated(usual, _ratio(share, 0.05))
 
 
@@ -163,6 +176,8 @@ def _label(beliefs: Beliefs, sight: Sight | None) -> float:
     usual = _expect(beliefs, lambda p: p.label)
     if sight is None or sight.pixels < 200:
         return usual
+    if any(len(word) >= _A_WORD for word in sight.words):
+        return _updated(usual, 4.0)
     return _updated(usual, _ratio(sight.text, 0.08, strength=1.0))
 
 
@@ -202,9 +217,18 @@ def _from_there(
     return 1.0 if near and min(near) < _NEAR_SOURCE_M else 0.1
 
 
-def remembered(listed: Listed, sight: Sight | None) -> Thing:
-    """A thing with its size estimated from what it most probably is."""
-    beliefs = classify(listed.tag, listed.volume_cm3, sight)
-    name = max(beliefs, key=lambda n: beliefs[n])
-    width, height = size_of(name, listed.volume_cm3)
-    return Thing(listed.tag, listed.position, listed.volume_cm3, width, height)
+def kind_of(tag: str, volume_cm3: float, sight: Sight | None) -> str:
+    """What a thing most probably is."""
+    beliefs = classify(tag, volume_cm3, sight)
+    return max(beliefs, key=lambda name: beliefs[name])
+
+
+def thing_of(tag: str, position: Vec3, volume_cm3: float, kind: str = "") -> Thing:
+    """A thing with its size estimated from what it is, or most probably is by its volume."""
+    width, height = size_of(kind or _kind_by_volume(tag, volume_cm3), volume_cm3)
+    return Thing(tag, position, volume_cm3, width, height)
+
+
+@lru_cache(maxsize=512)
+def _kind_by_volume(tag: str, volume_cm3: float) -> str:
+    return kind_of(tag, volume_cm3, None)

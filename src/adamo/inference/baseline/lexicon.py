@@ -12,6 +12,7 @@ class Kind(StrEnum):
     """Symbols of the grammar."""
 
     TAKE = "take"
+    FIND = "find"
     PUT = "put"
     BRING = "bring"
     """Takes, and puts where a place is named."""
@@ -45,6 +46,8 @@ class Kind(StrEnum):
     BE = "be"
     GOES = "goes"
     """States a wish about a place: "should be", "belongs"."""
+    HELD = "held"
+    """In the own hand."""
     THERE = "there"
     """The place named last."""
     AGAIN = "again"
@@ -72,6 +75,8 @@ _PHRASES: dict[Kind, str] = {
     "gathering|grasp|retrieve|seize|choose|hold on to|pick out|give me|hand me|pass me|get me|"
     "bring me|fetch me|grab me|gather up|collect up|find and pick|find and pick up|clutch|"
     "pick me up",
+    Kind.FIND: "find|finding|look for|looking for|locate|search for|seek|identify|"
+    "find out|detect|discover|determine",
     Kind.PUT: "put|putting|place|placing|drop|dropping|set|setting|lay|laying|leave|leaving|"
     "put down|set down|lay down|place down|deposit|position|rest|release|stand|arrange|drop off|"
     "let go of|put back|lower|i want|i would like|i need|make sure that|make sure|see that",
@@ -127,9 +132,13 @@ _PHRASES: dict[Kind, str] = {
     Kind.GOES: "should be|must be|should go|must go|goes|belongs|belong|needs to be|need to be|"
     "needs to go|need to go|has to be|have to be|shall be|has to go|have to go|to be|"
     "should stand|should lie|should rest|ends up|end up|should end up|should be placed|"
-    "should be put|must be placed|must be put|needs to be put|needs to be placed|to go",
+    "should be put|must be placed|must be put|needs to be put|needs to be placed|to go|shall go|"
+    "should move|must move|should stay|to stand|to lie|to rest|to end up|stays|stay|will be|"
+    "ought to be|ought to go",
     Kind.THERE: "there|over there|to the same place|in the same place|at the same place|"
     "in the same spot|to the same spot",
+    Kind.HELD: "in your hand|in the hand|to your hand|into your hand|into the hand|in hand|"
+    "in your hands|into your hands",
     Kind.AGAIN: "do the same with|do the same for|the same with|the same for|likewise",
     Kind.NEAREST: "nearest|closest",
     Kind.AND: "and|plus|as well as|along with|&|and also|but also",
@@ -149,7 +158,7 @@ _PHRASES: dict[Kind, str] = {
     "exactly|simply|you should|you must|you have to|you need to|back|there is|sir|so|together|"
     "would you mind|do me a favor and|do me a favour and|be so kind as to|would you be so kind to|"
     "task|i ask you to|we need you to|we want you to|must|should|if possible|"
-    "in your hand|in the hand|with your hand|to your hand|into your hand|go to|begin by|by hand|"
+    "with your hand|go to|begin by|by hand|"
     "in order|coloured|colored|your goal is to|away|along|only|each time|one by one|"
     "one after another|"
     "one after the other|immediately|straight|free|empty|available|a free spot|"

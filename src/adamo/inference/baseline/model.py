@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import hashlib
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 from adamo.action import ToolSchema
 from adamo.inference.baseline.grammar import understand
-from adamo.inference.baseline.policy import Step, decide
+from adamo.inference.baseline.manner import manner_of
+from adamo.inference.baseline.ocr import MISSING, PrintReader, installed
+from adamo.inference.baseline.policy import decide
 from adamo.inference.baseline.reading import read_prompt
-from adamo.inference.messages import AIMessage, Message, ToolCall
+from adamo.inference.baseline.saying import say
+from adamo.inference.messages import Message
 from adamo.inference.model import ModelKind, Reply, Sampling
 
 
@@ -21,10 +24,22 @@ class BaselineModel:
     shared between episodes and served to many at once.
     """
 
+    def __init__(self, ocr: bool | None = False) -> None:
+        """Choose the senses.
+
+        Args:
+            ocr: Read printed words too, for which the extra `ocr` must be installed; slower. None
+                to do so where it is installed.
+        """
+        wanted = ocr or (ocr is None and installed())
+        self._name = "baseline:ocr" if wanted else "baseline"
+        self._reader = PrintReader() if wanted and installed() else None
+        self._remark = MISSING if wanted and not installed() else ""
+
     @property
     def name(self) -> str:
         """As in its URI."""
-        return "baseline"
+        return self._name
 
     @property
     def kind(self) -> ModelKind:
@@ -42,18 +57,9 @@ class BaselineModel:
             sampling: Has no effect: the rules are deterministic.
         """
         begin = time.perf_counter()
-        prompt = read_prompt(messages)
-        step = decide(prompt, understand(prompt.instruction))
-        offered = {tool.name for tool in tools}
-        if step.name and step.name not in offered:
-            step = Step(f"I cannot go on: I have no tool named {step.name}.")
-        message = AIMessage(step.note, _calls(step))
+        prompt, manner = read_prompt(messages), manner_of(messages, tools)
+        step = decide(prompt, understand(prompt.instruction), manner, self._reader)
+        if self._remark and not prompt.turns:
+            step = replace(step, note=f"{self._remark} {step.note}")
+        message = say(step, manner, prompt.instruction)
         return Reply(message, seconds=time.perf_counter() - begin)
-
-
-def _calls(step: Step) -> tuple[ToolCall, ...]:
-    if not step.name:
-        return ()
-    # The id comes from the words alone, so that the same prompt gives the same reply.
-    digest = hashlib.sha256(f"{step.name}{step.arguments}{step.note}".encode()).hexdigest()
-    return (ToolCall(f"call_{digest[:12]}", step.name, dict(step.arguments)),)

@@ -46,6 +46,10 @@ class Cursor:
         """Go back to a marked position."""
         self._at = mark
 
+    def ahead(self) -> str:
+        """The words of the next symbol; empty at the end."""
+        return self._tokens[self._at].text if self._at < len(self._tokens) else ""
+
     def words_since(self, mark: int) -> str:
         """The words between a mark and here."""
         return " ".join(token.text for token in self._tokens[mark : self._at])
@@ -119,7 +123,10 @@ def noun_phrase(cursor: Cursor) -> Description:
     draft = _Draft()
     _before_noun(cursor, draft)
     found = _noun(cursor, draft)
+    any_of_them = cursor.words_since(begin).startswith("any ")
     while _after_noun(cursor, draft):
+        # "any object with a label" on the floor: all such objects.
+        draft.every = draft.every or (any_of_them and draft.generic)
         found = True
     if not found and not draft.says_something():
         raise cursor.fail("I expected a thing here")
@@ -225,6 +232,7 @@ def _of(cursor: Cursor, draft: _Draft) -> bool:
         if token.kind not in (Kind.PRONOUN, Kind.COUNT):
             _adjective(token, draft)
     seen = _noun(cursor, draft) or seen
+    seen = (draft.size is not None and cursor.accept(Kind.MEASURE) is not None) or seen
     draft.every = every  # "one of the locks" is one, "all of the locks" is read before
     return seen
 
@@ -257,7 +265,7 @@ def _being(cursor: Cursor, draft: _Draft) -> bool:
     cursor.accept(Kind.THAT)
     if not cursor.accept(Kind.BE, Kind.IN):
         return False
-    cursor.accept(Kind.DET)
+    cursor.accept(Kind.DET, Kind.COUNT)
     seen = False
     while token := cursor.accept(Kind.COLOUR, Kind.SHAPE, Kind.GLASSY, Kind.SIZE):
         seen = True

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from adamo.geometry import Vec3
-from adamo.inference.baseline.goals import Relation
-from adamo.inference.baseline.memory import Memory, Thing
+from adamo.inference.baseline.goals import Goal, Relation
+from adamo.inference.baseline.memory import Job, Memory, Thing
 from adamo.inference.baseline.reading import Prompt, Room
 
 _GAP_M = 0.02
@@ -250,3 +250,26 @@ def _pick_apart(scored: list[tuple[float, Vec3]], turn: int, apart_m: float) -> 
             if len(named) > turn:
                 return spot
     return named[-1]
+
+
+def spot(
+    prompt: Prompt, memory: Memory, goal: Goal, job: Job, thing: Thing, anchor: Thing | None
+) -> Vec3 | None:
+    """Where to put a thing so that its job is done; None if no such place is known."""
+    match goal.relation:
+        case Relation.NEAR if anchor:
+            return near_spot(prompt, memory, thing, anchor, job.tries)
+        case Relation.CORNER:
+            return corner_spot(prompt, memory, thing, job.tries)
+        case Relation.FLOOR:
+            near = anchor.position if anchor else None
+            return floor_spot(prompt, memory, thing, near, job.tries)
+        case Relation.SURFACE:
+            return surface_spot(prompt, memory, thing, goal.furniture, job.tries)
+        case _:
+            return None
+
+
+def place_words(point: Vec3) -> str:
+    """What feedback would say about a thing put down there."""
+    return "on the floor" if point.z < _LEVEL_M else "on the furniture"

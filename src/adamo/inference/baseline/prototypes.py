@@ -115,11 +115,15 @@ def prototypes() -> dict[str, Prototype]:
     return {prototype.name: prototype for prototype in _ALL}
 
 
+@cache
+def _by_lower_name() -> dict[str, str]:
+    return {name.lower(): name for name in prototypes()}
+
+
 def class_of(tag: str) -> str | None:
     """The class that a semantic tag names, or None for an opaque or unknown one."""
     name = tag.rsplit("_", 1)[0]
-    known = {known.lower(): known for known in prototypes()}
-    return known.get(name.lower())
+    return _by_lower_name().get(name.lower())
 
 
 def size_of(name: str, volume_cm3: float) -> tuple[float, float]:

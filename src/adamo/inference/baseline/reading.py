@@ -1,14 +1,18 @@
-"""What the prompt says: messages read back into data, as any reader of the text could."""
+"""What the prompt says: messages read back into data, as any reader of the text could.
+
+Two layouts are known, and what lies between them: the whole state in one place and always the
+latest, or what changed with each result. Which one it is shows in the messages themselves.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import radians
+from dataclasses import dataclass, field
 from typing import Any
 
 from adamo.geometry import Vec3
+from adamo.inference.baseline.state_text import Body, Listed, StateReader, first_point
 from adamo.inference.messages import (
     AIMessage,
     HumanMessage,
@@ -19,13 +23,17 @@ from adamo.inference.messages import (
     ToolMessage,
 )
 
+__all__ = ["Body", "Event", "Listed", "Prompt", "Room", "Turn", "first_point", "read_prompt"]
+
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
-_POINT = re.compile(rf"\(\s*{_NUMBER}\s*,\s*{_NUMBER}\s*,\s*{_NUMBER}\s*\)")
 _SPAN = re.compile(rf"x from {_NUMBER} to {_NUMBER} and y from {_NUMBER} to {_NUMBER}")
 _CORNER = re.compile(rf"{_NUMBER} x {_NUMBER} m squares")
 _NEAR = re.compile(rf"within {_NUMBER} m horizontally")
-_VOLUME = re.compile(rf"volume {_NUMBER}")
-_BOX = re.compile(r"box \[(\d+), (\d+), (\d+), (\d+)\]")
+_NEW_VIEW = "New view after"
+_CLOSE_UP = "What "
+"""How the words before a frame begin that is no view of the eyes."""
+_LEFT_OUT = "(An earlier picture"
+CLOSEUPS = ("Inspect", "Survey")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,36 +64,31 @@ class Room:
 
 
 @dataclass(frozen=True, slots=True)
-class Listed:
-    """One line of the object list."""
-
-    tag: str
-    position: Vec3
-    """Centre of the box, world metres."""
-    volume_cm3: float
-    box_px: tuple[int, int, int, int] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Body:
-    """The agent's own state; what the text form leaves out is None."""
-
-    position: Vec3
-    heading_rad: float | None = None
-    gaze: Vec3 | None = None
-    hand: str | None = None
-    """"empty" or the tag of the held object."""
-
-
-@dataclass(frozen=True, slots=True)
 class Event:
-    """The latest tool call and what came back."""
+    """A tool call and what came back."""
 
     name: str
     arguments: Mapping[str, Any]
-    outcome: str
-    """"done", "corrected" or "refused"."""
     text: str
+    """The feedback alone."""
+    pictures: tuple[ImagePart, ...] = ()
+    """Close-ups that came with it."""
+
+    @property
+    def outcome(self) -> str:
+        """Its first word: "done", "corrected", "refused", "not"."""
+        word = re.match(r"\W*(\w+)", self.text)
+        return word.group(1).lower() if word else ""
+
+    @property
+    def executed(self) -> bool:
+        """Whether it was tried at all."""
+        return self.outcome not in ("not", "")
+
+    @property
+    def tag(self) -> str:
+        """The object that it was about."""
+        return str(self.arguments.get("object", ""))
 
     @property
     def point(self) -> Vec3 | None:
@@ -94,21 +97,42 @@ class Event:
 
 
 @dataclass(frozen=True, slots=True)
+class Turn:
+    """One own message, and what came back for its calls."""
+
+    note: str
+    events: tuple[Event, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Prompt:
     """The whole prompt, read."""
 
     instruction: str
-    room: Room
-    things: tuple[Listed, ...]
-    points: tuple[Vec3, ...]
+    room: Room = field(default_factory=Room)
+    things: tuple[Listed, ...] = ()
+    """What the latest view shows."""
+    points: tuple[Vec3, ...] = ()
     """Reference points, world metres."""
-    body: Body
-    frame: ImagePart | None
-    """The latest frame."""
-    note: str
-    """The last own note; empty at the start."""
-    event: Event | None
-    """None before the first tool call."""
+    body: Body = field(default_factory=lambda: Body(Vec3(0.0, 0.0, 0.0)))
+    frame: ImagePart | None = None
+    """The latest view."""
+    turns: tuple[Turn, ...] = ()
+    """The own turns since the instruction, as far as they are in the prompt."""
+    event: Event | None = None
+    """The latest call that was tried; None before the first."""
+    fresh: bool = True
+    """Whether the view came after the last own turn."""
+    told: Mapping[str, Listed] = field(default_factory=dict)
+    """The latest word about each object that any text of the prompt lists."""
+    told_at: Mapping[str, int] = field(default_factory=dict)
+    """After how many of the own turns that was."""
+    told_from_m: Mapping[str, float] = field(default_factory=dict)
+    """From how far; empty where lists do not last."""
+    pinned: frozenset[str] = frozenset()
+    """Objects that the instruction's own message lists; it stays in the prompt for good."""
+    lasting: bool = False
+    """Whether lists stay in the prompt; otherwise the next view's list replaces this one."""
 
     @property
     def points_key(self) -> tuple[tuple[float, float, float], ...]:
@@ -116,10 +140,87 @@ class Prompt:
         return tuple((p.x, p.y, p.z) for p in self.points)
 
 
-def first_point(text: str, last: bool = False) -> Vec3 | None:
-    """The first or the last "(x, y, z)" in a text."""
-    found = _POINT.findall(text)
-    return Vec3.of([float(v) for v in found[-1 if last else 0]]) if found else None
+@dataclass(slots=True)
+class _Reader:
+    """Goes through the messages once, oldest first."""
+
+    state: StateReader = field(default_factory=StateReader)
+    system: list[str] = field(default_factory=list)
+    instruction: str = ""
+    frame: ImagePart | None = None
+    turns: list[Turn] = field(default_factory=list)
+    calls: dict[str, tuple[str, Mapping[str, Any]]] = field(default_factory=dict)
+    fresh: bool = True
+    viewed: int = 0
+    pinned: frozenset[str] = frozenset()
+
+    def read(self, message: Message) -> None:
+        match message:
+            case SystemMessage(text=text):
+                if not self.state.read_whole(text):
+                    self.system.append(text)
+            case HumanMessage():
+                self._human(message)
+            case AIMessage():
+                self._own(message)
+            case ToolMessage():
+                self._result(message)
+
+    def _human(self, message: HumanMessage) -> None:
+        texts = [part.text for part in message.parts if isinstance(part, TextPart)]
+        images = [part for part in message.parts if isinstance(part, ImagePart)]
+        first = texts[0] if texts else ""
+        if self.state.read_whole(first):
+            return
+        left_out = any(text.startswith(_LEFT_OUT) for text in texts)
+        if self.turns and first.startswith(_CLOSE_UP) and first.rstrip(".").endswith("shows"):
+            self._add_pictures(tuple(images))
+        elif self.turns and first.startswith(_NEW_VIEW):
+            self._view(images)
+        elif not self.instruction or images or left_out or len(texts) > 1:
+            self.instruction = first.strip()
+            self.turns.clear()
+            self.state.turn = 0
+            for text in texts[1:]:
+                self.state.read_changes(text)
+            self.pinned = self.pinned | frozenset(self.state.told)
+            self._view(images)
+
+    def _own(self, message: AIMessage) -> None:
+        arguments = [dict(call.arguments or {}) for call in message.calls]
+        notes = [str(a["note"]) for a in arguments if isinstance(a.get("note"), str)]
+        self.turns.append(Turn(message.text or "\n".join(notes), ()))
+        self.state.turn = len(self.turns)
+        for call, values in zip(message.calls, arguments, strict=True):
+            self.calls[call.id] = (call.name, values)
+        self.fresh = False
+
+    def _result(self, message: ToolMessage) -> None:
+        seen = self.state.read_changes(message.text)
+        name, arguments = self.calls.get(message.call_id, (message.name, {}))
+        text = message.text.split("\n\n", 1)[0].split(f"\n{_LEFT_OUT}", 1)[0]
+        pictures = message.images
+        close = name in CLOSEUPS or text.startswith("Not ")
+        if seen or (pictures and not close) or (name in CLOSEUPS and len(pictures) > 1):
+            self._view(pictures[-1:])
+            pictures = pictures[:-1]
+        if self.turns:
+            event = Event(name, arguments, text, pictures)
+            turn = self.turns[-1]
+            self.turns[-1] = Turn(turn.note, (*turn.events, event))
+
+    def _view(self, images: Sequence[ImagePart]) -> None:
+        self.fresh = True
+        self.viewed = len(self.turns)
+        if images:
+            self.frame = images[-1]
+
+    def _add_pictures(self, images: tuple[ImagePart, ...]) -> None:
+        turn = self.turns[-1]
+        if turn.events:
+            last = turn.events[-1]
+            event = Event(last.name, last.arguments, last.text, (*last.pictures, *images))
+            self.turns[-1] = Turn(turn.note, (*turn.events[:-1], event))
 
 
 def read_prompt(messages: Sequence[Message]) -> Prompt:
@@ -128,32 +229,27 @@ def read_prompt(messages: Sequence[Message]) -> Prompt:
     Args:
         messages: The prompt, oldest first.
     """
-    system = [m.text for m in messages if isinstance(m, SystemMessage)]
-    human = [m for m in messages if isinstance(m, HumanMessage)]
-    own = [m for m in messages if isinstance(m, AIMessage)]
-    state = next((text for text in system if "## Visible objects" in text), "")
-    frames = [p for m in human for p in m.parts if isinstance(p, ImagePart)]
+    reader = _Reader()
+    for message in messages:
+        reader.read(message)
+    state = reader.state
+    tried = [event for turn in reader.turns for event in turn.events if event.executed]
     return Prompt(
-        instruction=_instruction(human),
-        room=_room("\n".join(text for text in system if text is not state)),
-        things=tuple(_things(_section(state, "Visible objects"))),
-        points=tuple(
-            point
-            for line in _section(state, "Reference points").splitlines()
-            if (point := first_point(line))
-        ),
-        body=_body(_section(state, "You")),
-        frame=frames[-1] if frames else None,
-        note=next((m.text for m in reversed(own) if m.text), ""),
-        event=_event(messages),
+        instruction=reader.instruction,
+        room=_room("\n".join(reader.system)),
+        things=state.things(),
+        points=state.points,
+        body=state.body,
+        frame=reader.frame,
+        turns=tuple(reader.turns),
+        event=tried[-1] if tried else None,
+        fresh=reader.fresh,
+        told=state.told,
+        told_at=state.told_at if state.views else dict.fromkeys(state.told, reader.viewed),
+        told_from_m=state.told_from_m,
+        pinned=reader.pinned if state.views else frozenset(),
+        lasting=state.views > 0,
     )
-
-
-def _instruction(human: Sequence[HumanMessage]) -> str:
-    if not human:
-        return ""
-    texts = [part.text for part in human[0].parts if isinstance(part, TextPart)]
-    return texts[0].strip() if texts else ""
 
 
 def _room(text: str) -> Room:
@@ -172,62 +268,3 @@ def _room(text: str) -> Room:
         float(corner.group(1)) if corner else usual.corner_m,
         float(near.group(1)) if near else usual.near_m,
     )
-
-
-def _section(text: str, title: str) -> str:
-    found = re.search(rf"^## {title}\s*$(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)
-    return found.group(1).strip() if found else ""
-
-
-def _things(section: str) -> list[Listed]:
-    things = []
-    for line in section.splitlines():
-        head = re.match(r"-\s*([^:\s]+)\s*:", line)
-        point = first_point(line)
-        if not head or not point:
-            continue
-        volume, box = _VOLUME.search(line), _BOX.search(line)
-        pixels = tuple(int(v) for v in box.groups()) if box else None
-        things.append(
-            Listed(
-                head.group(1),
-                point,
-                float(volume.group(1)) if volume else 0.0,
-                (pixels[0], pixels[1], pixels[2], pixels[3]) if pixels else None,
-            )
-        )
-    return things
-
-
-def _body(section: str) -> Body:
-    lines = section.splitlines()
-    position = gaze = heading = hand = None
-    for line in lines:
-        if "position" in line:
-            position = first_point(line)
-        elif "gaze" in line:
-            gaze = first_point(line)
-        elif "heading" in line and (number := re.search(_NUMBER, line)):
-            heading = radians(float(number.group(1)))
-        elif "hand:" in line:
-            hand = line.split("hand:")[1].strip()
-    return Body(position or Vec3(0.0, 0.0, 0.0), heading, gaze, hand)
-
-
-def _event(messages: Sequence[Message]) -> Event | None:
-    """The last call that got feedback; a turn may have had several, the first is executed."""
-    tools = {m.call_id: m for m in messages if isinstance(m, ToolMessage)}
-    for message in reversed(messages):
-        if isinstance(message, AIMessage) and message.calls:
-            call = message.calls[0]
-            feedback = tools.get(call.id)
-            if feedback is None:
-                return None
-            word = re.match(r"\W*(\w+)", feedback.text)
-            return Event(
-                call.name,
-                dict(call.arguments or {}),
-                word.group(1).lower() if word else "",
-                feedback.text,
-            )
-    return None

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass
 from enum import IntEnum
 
 from adamo.geometry import Vec3
-from adamo.inference.baseline.memory import Memory, Thing
+from adamo.inference.baseline.happenings import FAR_M
+from adamo.inference.baseline.memory import Memory, Search, Thing
 from adamo.inference.baseline.reading import Prompt, Room
 
 SURVEY = 3
 """Steps of the first round: with the first frame they show the whole circle."""
-FAR_M = 2.6
-"""From farther away, small things and looks are not told reliably."""
 _MOST_VISITS = 14
 """Steps at most to see far things from nearby."""
 _LOOKS = 4
@@ -47,6 +46,16 @@ class Stage(IntEnum):
     """Looked from everywhere."""
 
 
+@dataclass(frozen=True, slots=True)
+class SearchStep:
+    """A step of the search."""
+
+    name: str
+    """"Look" or "Walk"."""
+    point: Vec3
+    search: Search
+
+
 def stage(prompt: Prompt, memory: Memory) -> Stage:
     """How far the search is."""
     if memory.views < SURVEY:
@@ -57,28 +66,24 @@ def stage(prompt: Prompt, memory: Memory) -> Stage:
     return Stage.CLOSE if memory.views < steps else Stage.OVER
 
 
-def next_step(prompt: Prompt, memory: Memory) -> tuple[str, Vec3]:
-    """The next step of the search, which is counted in the memory.
+def next_step(prompt: Prompt, memory: Memory) -> SearchStep:
+    """The next step of the search.
 
     Args:
         prompt: For the room and the body.
         memory: How far the search is; not over yet.
-
-    Returns:
-        "Look" or "Walk", and the point.
     """
     if memory.views >= SURVEY and (thing := _far_thing(prompt, memory)):
         return _go_closer(prompt, memory, thing)
     at, step = (0, 1) if memory.views < SURVEY else divmod(memory.views - SURVEY, 1 + _LOOKS)
-    memory.views += 1
     if step == 0:
-        return "Walk", places(prompt.room)[at]
+        return SearchStep("Walk", places(prompt.room)[at], Search.ROUND)
     body = prompt.body.position
     yaw = _heading(prompt) + math.pi / 2
     ahead = Vec3(
         body.x + _GAZE_AHEAD_M * math.cos(yaw), body.y + _GAZE_AHEAD_M * math.sin(yaw), _GAZE_Z_M
     )
-    return "Look", _into_room(prompt.room, body, ahead)
+    return SearchStep("Look", _into_room(prompt.room, body, ahead), Search.ROUND)
 
 
 def _far_thing(prompt: Prompt, memory: Memory) -> Thing | None:
@@ -86,22 +91,17 @@ def _far_thing(prompt: Prompt, memory: Memory) -> Thing | None:
     if memory.visits >= _MOST_VISITS:
         return None
     here = prompt.body.position
-    far = [thing for thing in memory.things.values() if thing.seen_m > FAR_M]
+    far = [thing for tag, thing in memory.things.items() if memory.seen_m.get(tag, 0.0) > FAR_M]
     return min(far, key=lambda t: (here.horizontal_distance(t.position), t.tag), default=None)
 
 
-def _go_closer(prompt: Prompt, memory: Memory, thing: Thing) -> tuple[str, Vec3]:
-    memory.visits += 1
-    here, event = prompt.body.position, prompt.event
-    came = event is not None and event.name == "Walk" and memory.visits % 2 == 0
-    if came or here.horizontal_distance(thing.position) < FAR_M:
-        # Looked at once from as near as one gets, it counts as seen, even if it is hidden there.
-        for tag, other in memory.things.items():
-            if other.position.horizontal_distance(thing.position) < 0.3:
-                memory.things[tag] = replace(other, seen_m=min(other.seen_m, FAR_M))
-        memory.visits += memory.visits % 2
-        return "Look", thing.position
-    return "Walk", Vec3(thing.position.x, thing.position.y, 0.0)
+def _go_closer(prompt: Prompt, memory: Memory, thing: Thing) -> SearchStep:
+    # An odd count of visits means that the last one was a walk, which has come as near as it can.
+    came = memory.visits % 2 == 1
+    if came or prompt.body.position.horizontal_distance(thing.position) < FAR_M:
+        return SearchStep("Look", thing.position, Search.NEARER)
+    place = Vec3(thing.position.x, thing.position.y, 0.0)
+    return SearchStep("Walk", place, Search.APPROACH)
 
 
 def _heading(prompt: Prompt) -> float:

@@ -20,13 +20,11 @@ class Sight:
     """How well an ellipse fits the silhouette, 0 to 1."""
     clear: float = 0.0
     """How much the object looks like what is behind it, 0 to 1."""
-    width_m: float | None = None
-    """Horizontal extent across the line of sight, metres."""
-    extent_m: float | None = None
-    """Vertical extent in the picture at the object's distance, metres: height seen from the
-    side mixed with depth seen from above."""
-    pitch_rad: float = 0.0
-    """How steeply the eyes look down at it."""
+    misfits: Mapping[str, float] = field(default_factory=dict)
+    """How badly each class of things would fill the box, see `silhouettes.misfits`; empty if the
+    place of the eyes is not known."""
+    words: tuple[str, ...] = ()
+    """Printed words that were read on it."""
     cut: bool = False
     """Whether the box touches the edge of the frame."""
 

@@ -6,8 +6,8 @@ where they are.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,10 +16,13 @@ from numpy.typing import NDArray
 from adamo.geometry import Camera
 from adamo.inference.baseline.colours import shares, white_level
 from adamo.inference.baseline.drawn import INK_BELOW, Mask, Picture, PixelBox, clipped, drawn_over
+from adamo.inference.baseline.drawn_boxes import with_boxes
 from adamo.inference.baseline.print_marks import print_share
 from adamo.inference.baseline.reading import Listed, Prompt
 from adamo.inference.baseline.sight import Sight
+from adamo.inference.baseline.silhouettes import misfits
 from adamo.inference.baseline.view import camera_of
+from adamo.inference.baseline.words import WordReader
 
 Masks = Mapping[str, tuple[Mask, float]]
 
@@ -28,20 +31,71 @@ _RING_PX = 12
 _BINS = 20
 """Bins of a colour channel in the histogram of the background."""
 _LEAST_PIXELS = 12
+_READABLE_PX = 600
+"""Least pixels of an object whose print can be read."""
+_SOME_PRINT = 0.02
+_ENOUGH_PIXELS = 15000
+_READING_MARGIN_PX = 8
 
 
-def sights(prompt: Prompt) -> Mapping[str, Sight]:
+def sights(prompt: Prompt, reader: WordReader | None = None) -> Mapping[str, Sight]:
     """Look at every listed thing that has a box.
 
     Args:
         prompt: Its latest frame must be the one that the list describes.
+        reader: Reads printed words on what seems to carry any; None to do without.
 
     Returns:
         Measurements by tag; empty without a frame or without boxes.
     """
-    if prompt.frame is None or not any(thing.box_px for thing in prompt.things):
+    things = boxed(prompt)
+    if prompt.frame is None or not any(thing.box_px for thing in things):
         return {}
-    return _looked_at(prompt.frame.data, prompt.things, prompt.points_key, camera_of(prompt))
+    found = _looked_at(prompt.frame.data, things, prompt.points_key, camera_of(prompt))
+    if reader is None:
+        return found
+    picture = decoded(prompt.frame.data)
+    assert picture is not None or not found
+    boxes = {thing.tag: thing.box_px for thing in things if thing.box_px}
+    return {
+        tag: replace(sight, words=reader.words(_with_margin(picture, boxes[tag])))
+        if picture is not None and _may_be_read(sight)
+        else sight
+        for tag, sight in found.items()
+    }
+
+
+def boxed(prompt: Prompt) -> tuple[Listed, ...]:
+    """What is in view, with its boxes: as the text tells them, or else as the frame shows them."""
+    camera = camera_of(prompt)
+    if prompt.frame is None or camera is None or all(thing.box_px for thing in prompt.things):
+        return prompt.things
+    return _boxed(prompt.frame.data, prompt.things, camera)
+
+
+@lru_cache(maxsize=8)
+def _boxed(data: bytes, things: tuple[Listed, ...], camera: Camera) -> tuple[Listed, ...]:
+    picture = decoded(data)
+    return things if picture is None else with_boxes(picture, things, camera)
+
+
+@lru_cache(maxsize=2)
+def decoded(data: bytes) -> Picture | None:
+    """The pixels of an encoded picture, BGR; None if it cannot be read."""
+    import cv2
+
+    pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    return None if pixels is None else np.asarray(pixels, np.uint8)
+
+
+def _may_be_read(sight: Sight) -> bool:
+    return sight.pixels >= _READABLE_PX and sight.text >= _SOME_PRINT
+
+
+def _with_margin(picture: Picture, box: PixelBox) -> Picture:
+    left, top, right, bottom = box
+    m = _READING_MARGIN_PX
+    return picture[clipped((left - m, top - m, right + m, bottom + m), picture)]
 
 
 @lru_cache(maxsize=8)
@@ -51,12 +105,9 @@ def _looked_at(
     points: tuple[tuple[float, float, float], ...],
     camera: Camera | None,
 ) -> Mapping[str, Sight]:
-    import cv2
-
-    decoded = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
-    if decoded is None:
+    picture = decoded(data)
+    if picture is None:
         return {}
-    picture: Picture = np.asarray(decoded, np.uint8)
     boxes = [thing.box_px for thing in things if thing.box_px]
     drawn = drawn_over(picture, boxes, points, camera)
     visible = [thing for thing in things if thing.box_px]
@@ -71,10 +122,28 @@ def _solid(
     """The pixels of a box that show its object, and how much looks like what is behind."""
     assert thing.box_px is not None
     area = clipped(thing.box_px, drawn)
-    own = _own_part(thing, things, drawn[area].shape) & ~drawn[area]
+    return own_pixels(picture, drawn, thing.box_px, _own_part(thing, things, drawn[area].shape))
+
+
+def own_pixels(
+    picture: Picture, drawn: Mask, box: PixelBox, part: Mask | None = None
+) -> tuple[Mask, float]:
+    """The pixels of a box that differ from what surrounds it.
+
+    Args:
+        picture: (H, W, 3) BGR.
+        drawn: (H, W), where lines and tags hide the picture.
+        box: Around the object.
+        part: Which part of the box may show it; all of it by default.
+
+    Returns:
+        Mask of the box's size, and the share of it that looks like its surroundings.
+    """
+    area = clipped(box, drawn)
+    own = ~drawn[area] if part is None else part & ~drawn[area]
     if not own.any():
         return own, 0.0
-    behind = _behind(picture, drawn, thing.box_px, picture[area])
+    behind = _behind(picture, drawn, box, picture[area])
     solid = own & ~behind
     clear = float((own & behind).sum() / own.sum())
     return (solid if solid.sum() >= _LEAST_PIXELS else own), clear
@@ -85,7 +154,8 @@ def _white(picture: Picture, masks: Masks, things: list[Listed]) -> float:
     for thing in things:
         assert thing.box_px is not None
         everything[clipped(thing.box_px, everything)] |= masks[thing.tag][0]
-    return white_level(picture, everything)
+    # Every other pixel of every other row tells the light as well.
+    return white_level(picture[::2, ::2], everything[::2, ::2])
 
 
 def _look_at(
@@ -101,17 +171,17 @@ def _look_at(
     if not solid.any():
         return Sight(0)
     crop = picture[clipped(thing.box_px, picture)]
-    width_m, extent_m, pitch = _metric(thing, camera)
+    # Of large things, some of the pixels tell colours and outline as well.
+    step = 1 + int((solid.size / _ENOUGH_PIXELS) ** 0.5)
+    coarse = solid[::step, ::step]
     height, width = picture.shape[:2]
     return Sight(
         pixels=int(solid.sum()),
-        colours=shares(crop, solid, white_from),
+        colours=shares(np.ascontiguousarray(crop[::step, ::step]), coarse, white_from),
         text=print_share(crop, solid),
-        roundness=_roundness(solid),
+        roundness=roundness(coarse),
         clear=clear,
-        width_m=width_m,
-        extent_m=extent_m,
-        pitch_rad=pitch,
+        misfits=misfits(thing, camera) if camera else {},
         cut=left <= 1 or top <= 1 or right >= width - 1 or bottom >= height - 1,
     )
 
@@ -164,7 +234,7 @@ def _bins(pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
     return lab
 
 
-def _roundness(mask: Mask) -> float:
+def roundness(mask: Mask) -> float:
     """How well the silhouette fits its own ellipse: overlap with it, as a share of the union."""
     import cv2
 
@@ -182,24 +252,3 @@ def _roundness(mask: Mask) -> float:
     cv2.ellipse(fitted, ellipse, 1, -1)
     union = int((full | fitted).sum())
     return float((full & fitted).sum() / union) if union else 0.0
-
-
-def _metric(thing: Listed, camera: Camera | None) -> tuple[float | None, float | None, float]:
-    """Extents in metres at the thing's distance, and how steeply it is looked at."""
-    if camera is None or thing.box_px is None:
-        return None, None, 0.0
-    to = thing.position - camera.position
-    flat = math.hypot(to.x, to.y)
-    distance = to.norm()
-    if distance < 0.2:
-        return None, None, 0.0
-    left, top, right, bottom = thing.box_px
-    wide = _angle(camera, (left, (top + bottom) / 2), (right, (top + bottom) / 2))
-    tall = _angle(camera, ((left + right) / 2, top), ((left + right) / 2, bottom))
-    return wide * distance, tall * distance, math.atan2(-to.z, flat)
-
-
-def _angle(camera: Camera, one: tuple[float, float], other: tuple[float, float]) -> float:
-    """Angle between the rays through two pixels; right at the edge of a wide view too."""
-    a, b = camera.rays(np.array([one, other]))
-    return math.acos(min(1.0, max(-1.0, float(a @ b))))
