@@ -1,17 +1,24 @@
-"""Completion of a model on every task: one episode for each task, scene and labeling.
+"""Completion of a model on every task: one episode for each task, scene, labeling and profile.
 
-python benchmarks/completion.py [--model baseline] [--scene s1] [--labeling sem] [--json]
+    python benchmarks/completion.py [--model baseline] [--scene s1] [--labeling sem]
+        [--profile paper] [--task T4] [--budget-usd 5] [--seed 0] [--json]
+
+Options may be repeated. Tokens are the provider's, or estimated for players that have none.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import statistics
 from typing import Any
 
 import adamo
+from adamo.assemble import create_player
 from adamo.benchmark.tasks import TASKS
+from adamo.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo.inference.tokens import Metered
 
 
 def main() -> None:
@@ -20,52 +27,77 @@ def main() -> None:
     parser.add_argument("--model", default="baseline")
     parser.add_argument("--scene", action="append")
     parser.add_argument("--labeling", action="append")
+    parser.add_argument("--profile", action="append")
     parser.add_argument("--task", action="append")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--budget-usd", type=float, help="cap on the whole run")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
+    player = Metered(create_player(arguments.model))
+    ledger, caps = Ledger(), Budget(usd=arguments.budget_usd)
     rows: list[dict[str, Any]] = []
     for scene in arguments.scene or ["s1"]:
         engine = adamo.create_engine(scene)
-        for labeling in arguments.labeling or ["sem", "opaq"]:
-            for task in arguments.task or [item.id for item in TASKS]:
-                result = adamo.run_episode(
-                    task=task, scene=scene, labeling=labeling, model=arguments.model, engine=engine
-                )
-                thinking = result.model_s / max(1, result.model_calls) * 1000
-                row = {
-                    "scene": scene,
-                    "labeling": labeling,
-                    "task": task,
-                    "completion": result.completion,
-                    "strict": result.strict,
-                    "steps": result.steps,
-                    "model_ms_per_call": round(thinking, 1),
-                    "termination": str(result.termination),
-                    "answer": result.answer,
-                }
-                rows.append(row)
-                if not arguments.json:
-                    print(
-                        f"{scene} {labeling:<4} {task:<3} {result.completion:.2f} strict "
-                        f"{result.strict:.0f} steps {result.steps:2d} {thinking:6.1f} ms/call  "
-                        f"{result.answer[:90]}"
-                    )
-        engine.close()
-    means = {
-        f"{scene} {labeling}": round(
-            statistics.mean(
-                row["completion"]
-                for row in rows
-                if (row["scene"], row["labeling"]) == (scene, labeling)
-            ),
-            3,
+        cells = itertools.product(
+            arguments.profile or ["paper"],
+            arguments.labeling or ["sem", "opaq"],
+            arguments.task or [item.id for item in TASKS],
         )
-        for scene, labeling in {(row["scene"], row["labeling"]) for row in rows}
-    }
+        for profile, labeling, task in cells:
+            result = adamo.run_episode(
+                task=task,
+                scene=scene,
+                labeling=labeling,
+                profile=profile,
+                model=player,
+                seed=arguments.seed,
+                guards=[BudgetGuard(Budget(), ledger, caps)],
+                engine=engine,
+            )
+            row = {
+                "scene": scene,
+                "profile": profile,
+                "labeling": labeling,
+                "task": task,
+                "completion": result.completion,
+                "strict": result.strict,
+                "steps": result.steps,
+                "model_calls": result.model_calls,
+                "tokens": result.tokens,
+                "model_ms_per_call": round(result.model_s / max(1, result.model_calls) * 1000, 1),
+                "termination": str(result.termination),
+                "answer": result.answer,
+            }
+            rows.append(row)
+            if not arguments.json:
+                scored = "    " if result.completion is None else f"{result.completion:.2f}"
+                print(
+                    f"{scene} {profile:<5} {labeling:<4} {task:<3} {scored} "
+                    f"strict {result.strict or 0:.0f} steps {result.steps:2d} calls "
+                    f"{result.model_calls:2d} tokens {result.tokens:6d} "
+                    f"{row['model_ms_per_call']:6.1f} ms/call  {result.answer[:80]}",
+                    flush=True,
+                )
+        engine.close()
+    means = _means(rows)
     if arguments.json:
-        print(json.dumps({"model": arguments.model, "mean_completion": means, "episodes": rows}))
+        print(json.dumps({"model": arguments.model, "means": means, "episodes": rows}))
     else:
-        print(means)
+        for cell, mean in means.items():
+            print(f"{cell:<16}", "  ".join(f"{key} {value}" for key, value in mean.items()))
+
+
+def _means(rows: list[dict[str, Any]]) -> dict[str, dict[str, float]]:
+    """Means over the scored episodes of each scene, profile and labeling."""
+    cells: dict[str, list[dict[str, Any]]] = {}
+    for row in rows:
+        if row["completion"] is not None:
+            cells.setdefault(f"{row['scene']} {row['profile']} {row['labeling']}", []).append(row)
+    counted = ("completion", "strict", "model_calls", "tokens", "model_ms_per_call")
+    return {
+        cell: {key: round(statistics.mean(row[key] for row in found), 3) for key in counted}
+        for cell, found in cells.items()
+    }
 
 
 if __name__ == "__main__":

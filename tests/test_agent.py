@@ -8,7 +8,7 @@ import pytest
 
 from adamo.action import Code, Outcome, ToolSchema
 from adamo.action_server import LocalActionServer
-from adamo.cognition.agent import Agent
+from adamo.cognition.agent import Agent, AgentConfig
 from adamo.cognition.termination import Limits, TerminationReason
 from adamo.cognition.trajectory import Ended, Started, Trajectory
 from adamo.errors import ProviderError
@@ -54,7 +54,8 @@ def run(
 ) -> tuple[Ended, Trajectory]:
     trajectory = Trajectory()
     server = LocalActionServer(engine, resolution=(480, 270))
-    agent = Agent(model, server, system_prompt="rules", limits=limits, observers=[trajectory], k=k)
+    config = AgentConfig(k=k, limits=limits or Limits())
+    agent = Agent(model, server, "rules", config, observers=[trajectory])
     return agent.run("Pick the plate"), trajectory
 
 

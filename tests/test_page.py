@@ -297,8 +297,8 @@ def test_only_the_first_call_of_a_message_counts(tmp_path: Path) -> None:
     run.think("Two at once.", *calls)
     run.acted("Pick", {"object": "4"}, Feedback(Outcome.DONE, Code.OK, "Done: it is in your hand."))
     (turn,) = turns(read_trajectory(tmp_path))
-    assert str(turn.call) == 'Pick(object="4")'
-    assert [str(call) for call in turn.ignored] == ['Pick(object="57")']
+    assert [str(deed.call) for deed in turn.deeds] == ['Pick(object="4")', 'Pick(object="57")']
+    assert [deed.left_out for deed in turn.deeds] == ["", "one action a turn"]
     assert "Not executed, one action a turn:" in page_of(tmp_path).text
 
 

@@ -8,13 +8,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from adamo.assemble import create_engine, replay_episode, resume_episode, run_episode
-    from adamo.benchmark.episode import EpisodeResult
+    from adamo.assemble import (
+        ChatSession,
+        create_engine,
+        replay_episode,
+        resume_episode,
+        run_episode,
+    )
+    from adamo.benchmark.episode import EpisodeConfig, EpisodeResult
+    from adamo.cognition.budget import Budget
+    from adamo.cognition.profile import Profile
     from adamo.errors import AdamoError
 
 __all__ = [
     "AdamoError",
+    "Budget",
+    "ChatSession",
+    "EpisodeConfig",
     "EpisodeResult",
+    "Profile",
     "create_engine",
     "replay_episode",
     "resume_episode",
@@ -23,7 +35,11 @@ __all__ = [
 
 _HOME = {
     "AdamoError": "adamo.errors",
+    "Budget": "adamo.cognition.budget",
+    "ChatSession": "adamo.assemble",
+    "EpisodeConfig": "adamo.benchmark.episode",
     "EpisodeResult": "adamo.benchmark.episode",
+    "Profile": "adamo.cognition.profile",
     "create_engine": "adamo.assemble",
     "replay_episode": "adamo.assemble",
     "resume_episode": "adamo.assemble",

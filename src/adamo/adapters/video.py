@@ -9,13 +9,16 @@ from __future__ import annotations
 import json
 import math
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from adamo.cognition.profile import Profile
 from adamo.cognition.trajectory import Acted, Ended, Event, Observed, Started, Thought
+from adamo.cognition.turns import Wish, read_turn
 from adamo.errors import ConfigError
 from adamo.geometry import Camera, Vec3
 from adamo.observation import Frame
@@ -32,9 +35,10 @@ _CODECS = {".webm": "VP80", ".avi": "MJPG"}
 _DISTANCE_M, _CAMERA_Z_M, _WALL_M = 2.7, 1.75, 0.35
 _FOLLOW = 0.1
 """Share of the way to its ideal place that the camera goes in each frame."""
-_INK, _PAPER = (236, 232, 224), (24, 24, 27)
+_INK, _PAPER, _CALL = (236, 232, 224), (24, 24, 27), (150, 190, 250)
 _COLOURS = {"done": (142, 206, 142), "corrected": (232, 200, 110), "refused": (236, 128, 118)}
-
+_NOTED = Profile(note_argument=True)
+"""Takes the note and the confidence out of the arguments, where they are."""
 
 _Line = tuple[str, str, tuple[int, int, int]]
 """Label, words and colour of a subtitle."""
@@ -70,6 +74,8 @@ class VideoRecorder:
         self._engine = engine
         self._camera_at: Vec3 | None = None
         self._text: list[_Line] = []
+        self._wishes: Sequence[Wish] = ()
+        """The calls of the turn, from the one that is being carried out."""
         self._drawn: tuple[tuple[_Line, ...], NDArray[np.uint8]] | None = None
         engine.stage.watcher = self._moment
 
@@ -80,21 +86,26 @@ class VideoRecorder:
                 self._text = [("Instruction", event.instruction, _INK)]
             case Observed(step=0):
                 self._pause(_PAUSE_S)
-            case Thought(calls=(call, *_)):
-                arguments = json.dumps(call.arguments) if call.arguments else call.raw
-                note = event.note.split("Memory:")[0]
-                self._text = [
-                    self._text[0],
-                    (f"Step {event.step + 1}", note, _INK),
-                    ("Call", f"{call.name} {arguments}", (150, 190, 250)),
-                ]
+            case Thought() if event.calls and not event.unreadable:
+                self._wishes = read_turn(event.reply, _NOTED).wishes
+                note = next((w.note for w in self._wishes if w.note.strip()), "")
+                note = (event.note.strip() or note).split("Memory:")[0]
+                calls = self._next()
+                label = f"Step {event.step + 1}" if calls else "Finish"
+                self._text = [self._text[0], (label, note, _INK), *calls]
                 self._pause(_PAUSE_S)
             case Acted():
                 colour = _COLOURS[event.feedback.outcome]
-                self._text.append(("Feedback", event.feedback.text, colour))
+                # Of a call that was doubted, the close-up is all that happened.
+                done = _caption(event.name, event.arguments, "")
+                self._text = [*self._text[:2], done, ("Feedback", event.feedback.text, colour)]
                 self._pause(_PAUSE_S / 2)
+                # The next call of the same turn may be about to be carried out.
+                self._wishes = self._wishes[1:]
+                self._text = [*self._text[:2], *self._next()]
             case Ended():
-                self._text = [self._text[0], ("Answer", event.answer, _COLOURS["done"])]
+                end = event.answer or f"(none: {event.reason.value.replace('_', ' ')})"
+                self._text = [self._text[0], ("Answer", end, _COLOURS["done"])]
                 self._pause(2 * _PAUSE_S)
             case _:
                 pass
@@ -103,6 +114,14 @@ class VideoRecorder:
         """Finish the film."""
         self._engine.stage.watcher = None
         self._writer.release()
+
+    def _next(self) -> list[_Line]:
+        """The call that comes next; Finish is none, its answer is shown at the end."""
+        return [
+            _caption(wish.call.name, wish.arguments, wish.call.raw)
+            for wish in self._wishes[:1]
+            if not wish.is_finish
+        ]
 
     def _pause(self, seconds: float) -> None:
         """Stand, breathe and blink while the text can be read; drawn at a third of the rate."""
@@ -163,6 +182,11 @@ class VideoRecorder:
             y += 12
         self._drawn = (key, np.asarray(picture))
         return self._drawn[1]
+
+
+def _caption(name: str, arguments: Mapping[str, Any] | None, raw: str) -> _Line:
+    """A call as a subtitle."""
+    return "Call", f"{name} {raw if arguments is None else json.dumps(arguments)}", _CALL
 
 
 def _wrapped(words: str, font: Any, width: int) -> list[str]:

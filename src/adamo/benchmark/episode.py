@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -13,12 +13,15 @@ from pydantic import TypeAdapter, ValidationError
 
 from adamo.benchmark.checkers import ConditionResult, score
 from adamo.benchmark.tasks import task
+from adamo.cognition.budget import Budget
+from adamo.cognition.profile import PAPER, Profile
 from adamo.cognition.termination import Limits, TerminationReason
 from adamo.cognition.trajectory import Trajectory
 from adamo.engine import WorldState, supporting_object
 from adamo.errors import ConfigError, RecordError
 from adamo.geometry import Vec3
-from adamo.inference.model import ModelKind, Sampling
+from adamo.inference.capabilities import Capabilities
+from adamo.inference.model import ModelKind, Sampling, Usage
 from adamo.perception import Labeling, TextForm
 
 FORMAT = 1
@@ -42,6 +45,9 @@ class EpisodeConfig:
     labeling: Labeling = Labeling.SEM
     model: str = "baseline"
     """Model URI."""
+    tool_calls: str = "auto"
+    """How a remote model is asked for its calls: "auto", "native", "schema" or "react"."""
+    profile: Profile = PAPER
     seed: int = 0
     k: int = 50
     """Steps in the short-term memory."""
@@ -52,6 +58,7 @@ class EpisodeConfig:
     text_form: TextForm = TextForm.FULL
     sampling: Sampling = field(default=Sampling())
     limits: Limits = field(default=Limits())
+    budget: Budget = field(default=Budget())
 
     def __post_init__(self) -> None:
         if not self.instruction.strip():
@@ -76,6 +83,8 @@ class Manifest:
     started_at: str
     """ISO 8601, UTC."""
     initial: WorldState
+    capabilities: Capabilities | None = None
+    """What the probe of a remote model found; None if none was made."""
     format: int = FORMAT
 
 
@@ -99,6 +108,8 @@ class EpisodeResult:
     instruction: str
     scene: str
     labeling: Labeling
+    profile: str
+    """Name of the profile, and the switches that differ from it."""
     model: str
     model_kind: ModelKind
     seed: int
@@ -109,6 +120,8 @@ class EpisodeResult:
     conditions: tuple[ConditionResult, ...]
     violations: tuple[str, ...]
     termination: TerminationReason
+    why: str
+    """Why it was stopped, in words, where there is more to say than the reason."""
     answer: str
     steps: int
     """Turns with a tool call."""
@@ -117,8 +130,16 @@ class EpisodeResult:
     """Executed or refused tool calls by kind."""
     missing_notes: int
     """Tool calls without a reasoning note."""
-    tokens: int
-    """Input plus output of all model calls."""
+    unreadable: int
+    """Protocol failures: replies that were neither a valid call nor an answer."""
+    requests: int
+    """Requests to the provider, repairs and failed tries included."""
+    usage: Usage
+    """Tokens of all model calls."""
+    cost_usd: float | None
+    """What the model calls cost; None if the price of any is unknown."""
+    rungs: tuple[str, ...]
+    """How the model was asked for its calls; empty without a wire."""
     model_s: float
     world_s: float
     walked_m: float
@@ -129,6 +150,11 @@ class EpisodeResult:
     """The run folder."""
     state_hash: str
     final: WorldState
+
+    @property
+    def tokens(self) -> int:
+        """Input plus output of all model calls."""
+        return self.usage.total_tokens
 
     def world(self) -> tuple[FinalObject, ...]:
         """Every object at the end, with the support called by its tag."""
@@ -173,6 +199,7 @@ def summarise(
         instruction=config.instruction,
         scene=config.scene,
         labeling=config.labeling,
+        profile=str(config.profile),
         model=manifest.model_name,
         model_kind=manifest.model_kind,
         seed=config.seed,
@@ -181,12 +208,17 @@ def summarise(
         conditions=scored.conditions if scored else (),
         violations=scored.violations if scored else (),
         termination=ended.reason,
+        why=ended.why,
         answer=ended.answer,
         steps=ended.steps,
         model_calls=len(trajectory.thoughts),
         calls=dict(sorted(kinds.items())),
-        missing_notes=sum(bool(t.calls) and not t.note.strip() for t in trajectory.thoughts),
-        tokens=sum(t.usage.total_tokens for t in trajectory.thoughts),
+        missing_notes=sum(bool(t.calls) and not t.reasoning.strip() for t in trajectory.thoughts),
+        unreadable=sum(bool(t.unreadable) for t in trajectory.thoughts),
+        requests=sum(t.requests for t in trajectory.thoughts),
+        usage=sum((t.usage for t in trajectory.thoughts), Usage()),
+        cost_usd=_total([t.cost_usd for t in trajectory.thoughts]),
+        rungs=tuple(sorted({str(t.rung) for t in trajectory.thoughts if t.rung is not None})),
         model_s=sum(t.model_s for t in trajectory.thoughts),
         world_s=sum(act.world_s for act in trajectory.acts),
         walked_m=sum(act.feedback.walked_m for act in trajectory.acts),
@@ -195,6 +227,12 @@ def summarise(
         state_hash=ended.state_hash,
         final=final,
     )
+
+
+def _total(costs: Sequence[float | None]) -> float | None:
+    """The sum; None if any is unknown, because an unknown price is not 0."""
+    known = [cost for cost in costs if cost is not None]
+    return sum(known) if known and len(known) == len(costs) else None
 
 
 def to_json(record: Manifest | EpisodeResult) -> Any:

@@ -96,7 +96,10 @@ def floor_plan(initial: WorldState, turns: Sequence[Turn], final: WorldState | N
     """
     scene = initial.scene
     states: list[tuple[str, BodyState | AgentState]] = [("start", initial.body)]
-    states += [(turn.label, turn.agent) for turn in turns if turn.agent]
+    for turn in turns:
+        # A plan may stand at several places in one turn.
+        steps = [(str(act.step), act.agent) for act in turn.acts]
+        states += steps or ([(turn.label, turn.agent)] if turn.agent else [])
     way = [_plan(state.position) for _, state in states]
     return FloorPlan(
         x=scene.x_min,

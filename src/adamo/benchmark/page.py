@@ -11,7 +11,8 @@ import hashlib
 import math
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -20,10 +21,12 @@ from typing import TYPE_CHECKING
 from adamo.benchmark.episode import EpisodeResult, Manifest, read_manifest, read_result
 from adamo.benchmark.floor_plan import MARGIN_M, floor_plan
 from adamo.benchmark.timeline import turns
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import FRAMES, Ended, Trajectory, read_trajectory
+from adamo.cognition.budget import Budget
+from adamo.cognition.termination import Limits, TerminationReason
+from adamo.cognition.trajectory import FRAMES, Ended, Thought, Trajectory, read_trajectory
 from adamo.geometry import Vec3
 from adamo.inference.model import Usage
+from adamo.inference.tokens import is_estimated
 from adamo.perception import Labeling
 
 if TYPE_CHECKING:
@@ -34,6 +37,49 @@ PAGE = "episode.html"
 
 _FRAME_NAME = re.compile(r"[0-9a-f]{8,64}\.(jpg|png)")
 """A recorded name must not lead out of the folder: what it names is put into the page."""
+_ENDINGS = {
+    TerminationReason.ANSWERED: ("ended", "Answered", "The model ended the episode."),
+    TerminationReason.EMPTY_REPLY: (
+        "truncated",
+        "Empty reply",
+        "The model said nothing, also after a reminder.",
+    ),
+    TerminationReason.PROTOCOL: (
+        "truncated",
+        "Unreadable",
+        "{limits.max_unreadable} answers in a row could not be read.",
+    ),
+    TerminationReason.LOOP: (
+        "truncated",
+        "Loop",
+        "Stopped: the same call led to the same state {limits.max_repeats} times.",
+    ),
+    TerminationReason.BUDGET: (
+        "truncated",
+        "Budget",
+        "Stopped: the budget of the episode is used up.",
+    ),
+    TerminationReason.STEP_LIMIT: (
+        "truncated",
+        "Step limit",
+        "Stopped after {limits.max_steps} steps.",
+    ),
+    TerminationReason.TIME_LIMIT: (
+        "truncated",
+        "Time limit",
+        "Stopped after {limits.max_seconds:g} s.",
+    ),
+    TerminationReason.RUN_BUDGET: (
+        "broken",
+        "Unscored",
+        "The budget of the whole run was used up; the episode does not count.",
+    ),
+    TerminationReason.BROKEN: (
+        "broken",
+        "Unscored",
+        "The episode broke through a fault that is not the model's; it does not count.",
+    ),
+}
 _MEDIA_TYPE = {"jpg": "image/jpeg", "png": "image/png"}
 
 
@@ -78,7 +124,8 @@ def render_page(
     Returns:
         A complete HTML document without any reference to the outside.
     """
-    steps = turns(trajectory)
+    steps = turns(trajectory, manifest.config.profile)
+    limits = manifest.config.limits
     style, script = _text("episode.css"), _text("episode.js")
     return (
         _environment()
@@ -91,8 +138,10 @@ def render_page(
             verdict=_verdict(manifest, trajectory.ended, result),
             result=result,
             calls=dict(sorted(Counter(act.name for act in trajectory.acts).items())),
-            usage=sum((thought.usage for thought in trajectory.thoughts), Usage()),
+            account=_account(trajectory.thoughts),
             turns=steps,
+            caps=_caps(manifest.config.budget),
+            ending=lambda ended: _ending(limits, ended),
             plan=floor_plan(manifest.initial, steps, result.final if result else None),
             plan_margin=MARGIN_M,
             named=_naming(manifest),
@@ -109,30 +158,57 @@ def _verdict(
     manifest: Manifest, ended: Ended | None, result: EpisodeResult | None
 ) -> tuple[str, str, str]:
     """How the episode ended: a tone for the colour, a headline and a sentence."""
-    limits = manifest.config.limits
     if ended is None:
         return (
             "unfinished",
             "Not finished",
             "The record has no end: the run was stopped, or it is still going on.",
         )
-    if ended.reason is TerminationReason.BROKEN:
-        return (
-            "broken",
-            "Unscored",
-            "The episode broke through a fault that is not the model's; it does not count.",
-        )
-    if result is None:
+    if result is None and manifest.config.task and ended.reason.is_scored:
         return "unfinished", "Not scored", "The episode ended, but its result was never written."
-    match ended.reason:
-        case TerminationReason.STEP_LIMIT:
-            return "truncated", "Step limit", f"Stopped after {limits.max_steps} steps."
-        case TerminationReason.TIME_LIMIT:
-            return "truncated", "Time limit", f"Stopped after {limits.max_seconds:g} s."
-        case TerminationReason.EMPTY_REPLY:
-            return "truncated", "Empty reply", "The model said nothing, also after a reminder."
-        case _:
-            return "ended", "Answered", "The model ended the episode."
+    return _ending(manifest.config.limits, ended)
+
+
+def _ending(limits: Limits, ended: Ended) -> tuple[str, str, str]:
+    """How one instruction ended: a tone for the colour, a headline and a sentence."""
+    tone, headline, sentence = _ENDINGS[ended.reason]
+    return tone, headline, sentence.format(limits=limits)
+
+
+@dataclass(frozen=True, slots=True)
+class _Account:
+    """What the model took."""
+
+    usage: Usage
+    cost_usd: float | None
+    """None if the price of any answer is unknown: an unknown price is not 0."""
+    is_estimated: bool
+    """Whether no provider counted the tokens."""
+    requests: int
+    rungs: tuple[str, ...]
+    """How calls were asked for."""
+    unreadable: int
+    """Protocol failures."""
+
+
+def _account(thoughts: Sequence[Thought]) -> _Account:
+    costs = [thought.cost_usd for thought in thoughts]
+    known = [cost for cost in costs if cost is not None]
+    return _Account(
+        sum((thought.usage for thought in thoughts), Usage()),
+        sum(known) if known and len(known) == len(costs) else None,
+        any(is_estimated(thought.settings) for thought in thoughts),
+        sum(thought.requests for thought in thoughts),
+        tuple(sorted({thought.rung.value for thought in thoughts if thought.rung})),
+        sum(bool(thought.unreadable) for thought in thoughts),
+    )
+
+
+def _caps(budget: Budget) -> str:
+    """The caps of an episode in words; empty without any."""
+    units = {"tokens": "tokens", "usd": "US dollars", "calls": "model calls", "seconds": "s"}
+    caps = {unit: getattr(budget, name) for name, unit in units.items()}
+    return ", ".join(f"{cap:,} {unit}" for unit, cap in caps.items() if cap is not None)
 
 
 def _naming(manifest: Manifest) -> Callable[[str], str]:
@@ -178,7 +254,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters.update(
-        place=_place, degrees=_degrees, seconds=_seconds, thousands=_thousands
+        place=_place, degrees=_degrees, seconds=_seconds, thousands=_thousands, dollars=_dollars
     )
     return environment
 
@@ -201,3 +277,7 @@ def _seconds(value: float) -> str:
 
 def _thousands(value: int) -> str:
     return f"{value:,}"
+
+
+def _dollars(value: float) -> str:
+    return f"${value:.2f}" if value >= 1 else f"${value:.4f}"

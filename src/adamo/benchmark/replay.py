@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from adamo.action_server import ActionServer, execute_call
-from adamo.cognition.trajectory import Started, Trajectory, frame_name
+from adamo.cognition.trajectory import Acted, Event, Observed, Started, Trajectory, frame_name
 from adamo.errors import RecordError
+from adamo.observation import Frame
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,16 +45,29 @@ def replay(server: ActionServer, recorded: Trajectory, start: int = 0) -> Replay
     before = acts[start - 1].state_hash if start else began.state_hash
     if server.state_hash() != before:
         mismatches.append(f"the state after step {start} differs from the recorded one")
-    frames = {view.step: view.frame for view in recorded.views}
-    if start == 0 and 0 in frames:
-        frames_differ += frame_name(server.observe().frame) != frames[0]
-    for act in acts[start:]:
-        result = execute_call(server, act.name, act.arguments)
-        if result.state_hash != act.state_hash:
-            mismatches.append(
-                f"step {act.step}: {act.name} led to state {result.state_hash[:12]}, "
-                f"recorded {act.state_hash[:12]}"
-            )
-        if result.observation is not None:
-            frames_differ += frame_name(result.observation.frame) != frames.get(act.step)
+    frame: Frame | None = None
+    for event in _events_after(recorded, start):
+        if isinstance(event, Acted):
+            result = execute_call(server, event.name, event.arguments)
+            frame = None if result.observation is None else result.observation.frame
+            if result.state_hash != event.state_hash:
+                mismatches.append(
+                    f"step {event.step}: {event.name} led to state {result.state_hash[:12]}, "
+                    f"recorded {event.state_hash[:12]}"
+                )
+        if isinstance(event, Observed):
+            # A view that no action brought was asked for: at the start, or to see what changed.
+            seen = frame or server.observe().frame
+            frames_differ += frame_name(seen) != event.frame
+            frame = None
     return ReplayReport(len(acts) - start, tuple(mismatches), frames_differ)
+
+
+def _events_after(recorded: Trajectory, start: int) -> Iterator[Event]:
+    """The events after a number of actions; the views that followed the last of them are passed."""
+    count = 0
+    for event in recorded.events:
+        if isinstance(event, Acted):
+            count += 1
+        if count > start or start == 0:
+            yield event

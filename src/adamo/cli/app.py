@@ -17,6 +17,8 @@ tasks_app = typer.Typer(help="The benchmark's tasks.", invoke_without_command=Tr
 app.add_typer(tasks_app, name="tasks")
 scenes_app = typer.Typer(help="The scenes, built-in and own.", invoke_without_command=True)
 app.add_typer(scenes_app, name="scenes")
+models_app = typer.Typer(help="The models.", no_args_is_help=True)
+app.add_typer(models_app, name="models")
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 
@@ -33,15 +35,36 @@ def run(
     model: Annotated[
         str,
         typer.Option(
-            help="baseline, scripted:FILE.json, replay:RUN_DIR, openai:NAME or openai:NAME@URL."
+            help="baseline, random, scripted:FILE.json, replay:RUN_DIR, cassette:RUN_DIR, "
+            "openai:NAME, openai:NAME@URL, anthropic:NAME, google:NAME, ..."
         ),
     ] = "baseline",
+    tool_calls: Annotated[
+        str,
+        typer.Option(help="How a remote model gives its calls: auto, native, schema or react."),
+    ] = "auto",
+    profile: Annotated[
+        str, typer.Option(help="How it is spoken to: paper, paper-exact or lean.")
+    ] = "paper",
+    switch: Annotated[
+        list[str] | None,
+        typer.Option(help="One switch of the profile, e.g. plan=1; may be repeated."),
+    ] = None,
     seed: Annotated[int, typer.Option(help="Seed of the episode.")] = 0,
     k: Annotated[int, typer.Option(help="Steps in the short-term memory.")] = 50,
     grid: Annotated[int, typer.Option(help="Reference points along a side.")] = 6,
     resolution: Annotated[str, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = "1920x1080",
     text: Annotated[str, typer.Option(help="Symbolic text: full or paper.")] = "full",
     max_steps: Annotated[int, typer.Option(help="Step cap.")] = 60,
+    budget: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A cap: tokens=50000, usd=0.5, calls=20 or seconds=300; may be repeated."
+        ),
+    ] = None,
+    record: Annotated[
+        bool, typer.Option("--record", help="Keep every request and reply as a cassette.")
+    ] = False,
     out: Annotated[
         Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
     ] = None,
@@ -55,6 +78,7 @@ def run(
 ) -> None:
     """Run one episode: an instruction in plain words, or a task of the benchmark."""
     from adamo.cli.episode import resume_and_show, run_and_show
+    from adamo.cli.settings import pairs, read_budget
 
     if resume is not None:
         resume_and_show(resume, as_json=json)
@@ -68,6 +92,11 @@ def run(
         figure=figure,
         labeling=labeling,
         model=model,
+        tool_calls=tool_calls,
+        profile=profile,
+        switches=pairs(switch, "switch"),
+        budget=read_budget(pairs(budget, "budget")),
+        record=record,
         seed=seed,
         k=k,
         grid=grid,
@@ -75,6 +104,49 @@ def run(
         text_form=text,
         max_steps=max_steps,
         video=video,
+    )
+
+
+@app.command()
+def chat(
+    scene: Annotated[str, typer.Option(help="Built-in scene or scene file.")] = "s1",
+    figure: Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")] = "mara",
+    labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
+    model: Annotated[str, typer.Option(help="As in `adamo run`.")] = "baseline",
+    profile: Annotated[str, typer.Option(help="paper, paper-exact or lean.")] = "lean",
+    switch: Annotated[
+        list[str] | None,
+        typer.Option(help="One switch of the profile, e.g. plan=1; may be repeated."),
+    ] = None,
+    budget: Annotated[
+        list[str] | None,
+        typer.Option(help="A cap on the whole conversation, e.g. usd=0.5; may be repeated."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
+    ] = None,
+    resume: Annotated[
+        Path | None, typer.Option(help="Go on with a recorded conversation or episode.")
+    ] = None,
+    record: Annotated[
+        bool, typer.Option("--record", help="Keep every request and reply as a cassette.")
+    ] = False,
+) -> None:
+    """Talk with the agent: one instruction after another, in the same world, remembered."""
+    from adamo.cli.chat import talk
+    from adamo.cli.settings import pairs, read_budget
+
+    talk(
+        resume=resume,
+        out=out,
+        record=record,
+        scene=scene,
+        figure=figure,
+        labeling=labeling,
+        model=model,
+        profile=profile,
+        switches=pairs(switch, "switch"),
+        budget=read_budget(pairs(budget, "budget")),
     )
 
 
@@ -154,6 +226,18 @@ def scenes_show(
     show(file, out)
 
 
+@models_app.command("check")
+def models_check(
+    uri: Annotated[str, typer.Argument(help="The model, as for --model of run.")],
+    refresh: Annotated[bool, typer.Option("--refresh", help="Ask it again.")] = False,
+    json: Json = False,
+) -> None:
+    """Ask a model a few small questions: is it there, does it see, does it call tools?"""
+    from adamo.cli.models import check
+
+    check(uri, refresh=refresh, as_json=json)
+
+
 @app.command()
 def doctor(json: Json = False) -> None:
     """Check this machine: graphics, cache, keys, versions; every problem comes with its fix."""
@@ -171,3 +255,38 @@ def export_figure(
     from adamo.cli.figure import export
 
     export(file, who)
+
+
+@app.command("serve-model")
+def serve_model(
+    model: Annotated[
+        str, typer.Argument(help="baseline, random, scripted:FILE.json or cassette:DIR.")
+    ] = "baseline",
+    port: Annotated[int, typer.Option(help="Port; 0 for a free one.")] = 8010,
+    host: Annotated[str, typer.Option(help="A loopback address; no other is served.")] = (
+        "127.0.0.1"
+    ),
+    tools: Annotated[
+        bool,
+        typer.Option(
+            "--tools/--no-tools",
+            help="Without, the model has no tool calling: it writes JSON steps if the request "
+            "brings their schema, else Thought, Action and Action Input as text.",
+        ),
+    ] = True,
+    faults: Annotated[
+        Path | None,
+        typer.Option(
+            help="TOML file of what goes wrong on purpose. Each fault table has a what (error with "
+            "status and retry_after_s, error_in_200, refused_parameter with parameter, hang or "
+            "slow with seconds, reset, half_body, bad_json, empty_reply, unknown_tool, "
+            "wrong_arguments, broken_arguments, two_calls, leaked_call with style) and one of "
+            "every (every Nth request), requests (a list of numbers) and probability. Example: "
+            "docs/serve-model.md."
+        ),
+    ] = None,
+) -> None:
+    """Serve a local model as an OpenAI-compatible endpoint, for any client on this machine."""
+    from adamo.cli.serve_model import serve
+
+    serve(model, host, port, faults, tools=tools)

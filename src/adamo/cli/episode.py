@@ -16,6 +16,8 @@ from rich.console import Console
 
 from adamo.benchmark.episode import EpisodeResult, to_json
 from adamo.cli.progress import Progress
+from adamo.cognition.budget import Budget
+from adamo.cognition.forecast import Forecast
 from adamo.cognition.termination import Limits
 from adamo.cognition.trajectory import Observer
 from adamo.engine import Engine
@@ -51,11 +53,21 @@ def run_and_show(
             limits=limits,
             out=folder,
             observers=observers,
+            announce=None if as_json else lambda ahead: _announce(ahead, settings["budget"]),
             **settings,
         )
     if out is None:
         _mark_latest(folder)
     _show(result, folder, as_json=as_json)
+
+
+def _announce(ahead: Forecast, budget: Budget) -> None:
+    """Say what an episode will take, and whether its budget is enough."""
+    console = Console()
+    console.print("[bold]forecast[/bold]   ", end=" ")
+    console.print(ahead.text(), markup=False, highlight=False, soft_wrap=True)
+    if warning := ahead.warns(budget):
+        console.print(warning, style="yellow", markup=False, highlight=False, soft_wrap=True)
 
 
 @contextmanager
@@ -152,9 +164,9 @@ def result_json(result: EpisodeResult) -> dict[str, Any]:
     """The object that `adamo run --json` prints."""
     data = to_json(result)
     keys = (
-        "task instruction scene labeling model model_kind seed completion strict conditions "
-        "violations termination answer steps model_calls calls missing_notes tokens model_s "
-        "world_s walked_m direct_m run state_hash"
+        "task instruction scene labeling profile model model_kind seed completion strict "
+        "conditions violations termination why answer steps model_calls calls missing_notes "
+        "unreadable requests usage cost_usd rungs model_s world_s walked_m direct_m run state_hash"
     )
     world = [
         {
@@ -167,7 +179,26 @@ def result_json(result: EpisodeResult) -> dict[str, Any]:
         }
         for item in result.world()
     ]
-    return {**{key: data[key] for key in keys.split()}, "world": world}
+    counted = {"tokens": result.tokens, "world": world}
+    return {**{key: data[key] for key in keys.split()}, **counted}
+
+
+def _accounts(result: EpisodeResult) -> str:
+    """What the model took: calls, tokens, money."""
+    usage = result.usage
+    parts = [f"{result.profile} profile, {result.model_calls} calls"]
+    if usage.total_tokens:
+        parts.append(
+            f"{usage.input_tokens} tokens in ({usage.cached_tokens} cached), "
+            f"{usage.output_tokens} out ({usage.reasoning_tokens} reasoning)"
+        )
+        cost = result.cost_usd
+        parts.append("price unknown" if cost is None else f"{cost:.4f} USD")
+    if result.rungs:
+        parts.append(f"calls as {', '.join(result.rungs)}")
+    if result.unreadable:
+        parts.append(f"{result.unreadable} unreadable replies")
+    return "; ".join(parts)
 
 
 def _print_result(console: Console, result: EpisodeResult, folder: Path) -> None:
@@ -189,7 +220,10 @@ def _print_result(console: Console, result: EpisodeResult, folder: Path) -> None
     for violation in result.violations:
         line("", violation)
     calls = ", ".join(f"{name} {count}" for name, count in result.calls.items()) or "none"
-    line("calls", f"{calls}; {result.tokens} tokens; {result.termination}")
+    line("calls", f"{calls}; {result.termination}")
+    if result.why:
+        line("stopped", result.why)
+    line("model", _accounts(result))
     line("time", f"model {result.model_s:.1f} s, world {result.world_s:.1f} s")
     line("walked", f"{result.walked_m:.1f} m, {result.direct_m:.1f} m in straight lines")
     line("page", str(folder / "episode.html"))

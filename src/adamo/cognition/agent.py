@@ -3,27 +3,48 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
 
-from adamo.action import tool_schema
-from adamo.action_server import ActionServer, execute_call
-from adamo.cognition.memory import ShortTermMemory
+from adamo.action import Inspect, action_name
+from adamo.action_server import ActionResult, ActionServer, execute_call
+from adamo.cognition.doubts import Doubts
+from adamo.cognition.guards import Guard, LoopGuard, ProtocolGuard
+from adamo.cognition.memory import Result, ShortTermMemory
+from adamo.cognition.profile import PAPER, Profile
 from adamo.cognition.prompts import render
 from adamo.cognition.termination import Limits, Stopwatch, TerminationReason
-from adamo.cognition.trajectory import Acted, Ended, Event, Observer, Started, Thought, observed
-from adamo.errors import AdamoError
-from adamo.inference.messages import (
-    AIMessage,
-    HumanMessage,
-    ImagePart,
-    TextPart,
-    ToolMessage,
+from adamo.cognition.trajectory import (
+    Ended,
+    Event,
+    LeftOut,
+    Observer,
+    Started,
+    acted,
+    observed,
+    shown,
+    thought,
 )
+from adamo.cognition.turns import Turn, Wish, offered, read_turn
+from adamo.errors import AdamoError
+from adamo.inference.messages import AIMessage
 from adamo.inference.model import Model, Sampling
 from adamo.observation import Frame, Observation
-from adamo.perception import TextForm, agent_lines, object_lines, point_lines
+from adamo.perception import TextForm
 
-_ONE_A_TURN = "Not executed: one action a turn."
+
+@dataclass(frozen=True, slots=True)
+class AgentConfig:
+    """How the model is spoken to, and how far it may go; the defaults are the paper's baseline."""
+
+    profile: Profile = PAPER
+    k: int = 50
+    """Steps that the short-term memory keeps."""
+    text_form: TextForm = TextForm.FULL
+    """Which fields the symbolic state has."""
+    sampling: Sampling = field(default=Sampling())
+    limits: Limits = field(default=Limits())
 
 
 class Agent:
@@ -33,12 +54,10 @@ class Agent:
         self,
         model: Model,
         server: ActionServer,
-        *,
         system_prompt: str,
-        k: int = 50,
-        text_form: TextForm = TextForm.FULL,
-        sampling: Sampling | None = None,
-        limits: Limits | None = None,
+        config: AgentConfig | None = None,
+        *,
+        guards: Sequence[Guard] = (),
         observers: Sequence[Observer] = (),
     ) -> None:
         """Bring a model and a body together.
@@ -47,26 +66,29 @@ class Agent:
             model: Who decides.
             server: What acts.
             system_prompt: The fixed instructions.
-            k: Steps that the short-term memory keeps.
-            text_form: Which fields the symbolic state has.
-            sampling: Decoding settings.
-            limits: Caps on steps and seconds.
+            config: How the model is spoken to and how far it may go; the paper's baseline by
+                default.
+            guards: Further reasons to stop, e.g. a budget.
             observers: Are told of every event.
         """
         self._model = model
         self._server = server
         self._system_prompt = system_prompt
-        self._memory = ShortTermMemory(system_prompt, k)
-        self._text_form = text_form
-        self._sampling = sampling or Sampling()
-        self._limits = limits or Limits()
-        self._observers = observers
-        self._tools = [tool_schema(action) for action in server.actions]
-        self._watch = Stopwatch()
+        config = config or AgentConfig()
+        self._profile, self._limits = config.profile, config.limits
+        self._sampling = replace(config.sampling, exact=config.profile.exact_sampling)
+        self._memory = ShortTermMemory(system_prompt, config.k, config.profile, config.text_form)
+        self._guards: tuple[Guard, ...] = (
+            ProtocolGuard(config.limits.max_unreadable),
+            LoopGuard(config.limits.max_repeats),
+            *guards,
+        )
+        self._observers: tuple[Observer, ...] = (*self._guards, *observers)
+        self._tools = offered(server.actions, config.profile)
         self._steps = 0
 
     def run(self, instruction: str) -> Ended:
-        """Carry out one instruction.
+        """Carry out one instruction; a further one goes on in the same world and memory.
 
         Returns:
             How it ended. A fault of a provider or of ours ends it as `BROKEN`, for the caller to
@@ -74,117 +96,139 @@ class Agent:
         """
         try:
             self._begin(instruction)
-            while (reason := self._limits.exceeded(self._steps, self._watch.seconds)) is None:
-                message = self.think()
-                if not message.calls:
-                    return self._end(_final(message), message.text)
-                self.act(message)
+            while (reason := self._stop()) is None:
+                turn = self.think()
+                if objection := self._doubts.about_turn(turn):
+                    self._reply(turn, objection)
+                    if not turn.wishes:
+                        self._memory.remark(objection)
+                elif turn.ends:
+                    self._reply(turn, render("said"))
+                    return self._end(turn.reason, turn.answer)
+                else:
+                    self.act(turn)
             return self._end(reason, "")
         except AdamoError as error:
             return self._end(TerminationReason.BROKEN, f"{type(error).__name__}: {error}")
 
-    def think(self) -> AIMessage:
-        """Ask the model; an empty answer is nudged once."""
-        message = self._ask()
-        if not message.calls and not message.text.strip():
-            nudge = HumanMessage((TextPart(render("nudge")),))
-            self._memory.add_step(nudge)
-            message = self._ask()
-        return message
+    def think(self) -> Turn:
+        """Ask the model."""
+        messages = self._memory.messages()
+        asked = time.monotonic()
+        reply = self._model.complete(messages, self._tools, self._sampling)
+        # Only the reply's own time counts: waits do not, and a recorded reply took its time before.
+        self._watch.leave_out(time.monotonic() - asked - reply.seconds)
+        self._tell(thought(self._steps, self._memory.state_text, messages, reply))
+        return read_turn(reply, self._profile)
 
-    def act(self, message: AIMessage) -> None:
-        """Execute the first call; answer further ones without executing them."""
-        call, *further = message.calls
-        started = time.monotonic()
-        result = execute_call(self._server, call.name, call.arguments)
-        seconds = time.monotonic() - started
-        answers = (
-            ToolMessage(call.id, call.name, result.feedback.text),
-            *(ToolMessage(other.id, other.name, _ONE_A_TURN) for other in further),
-        )
-        view = result.observation
-        frame = () if view is None else (_frame_message(view),)
-        self._memory.add_step(message, *answers, *frame)
-        self._steps += 1
-        self._tell(
-            Acted(
-                self._steps,
-                call.name,
-                call.arguments,
-                result.feedback,
-                result.agent,
-                result.state_hash,
-                result.saved,
-                seconds,
-            )
-        )
-        self._perceived(view)
+    def act(self, turn: Turn) -> None:
+        """Execute the calls of a turn up to the first surprise; every one gets its answer."""
+        results: list[Result] = []
+        for wish in turn.wishes:
+            why_not = self._why_not(wish, results)
+            results.append(self._left_out(wish, why_not) if why_not else self._carry_out(wish))
+        self._look_again(results)
+        self._memory.add_step(*self._remembered(turn.message, results))
 
     def _begin(self, instruction: str) -> None:
         self._watch = Stopwatch()
-        self._steps = 0
+        self._first_step = self._steps
+        self._doubts = Doubts(self._profile)
         server = self._server
         self._tell(Started(instruction, self._system_prompt, server.state_hash(), server.save()))
-        self._view = self._server.observe()
-        first = HumanMessage((TextPart(instruction), _image(self._view.frame)))
-        self._memory.begin(first, self._state_text())
-        self._tell(observed(0, self._view), self._view.frame)
+        self._memory.instruct(instruction, self._observe())
 
-    def _perceived(self, view: Observation | None) -> None:
-        """Take a new view in, if there is one, and bring the symbolic state up to date."""
-        if view is not None:
-            self._view = view
-            self._tell(observed(self._steps, view), view.frame)
-        self._memory.update_state(self._state_text())
+    def _stop(self) -> TerminationReason | None:
+        """The first reason to stop before another question."""
+        limit = self._limits.exceeded(self._steps - self._first_step, self._watch.seconds)
+        reasons = (limit, *(guard.verdict() for guard in self._guards))
+        return next((reason for reason in reasons if reason is not None), None)
 
-    def _state_text(self) -> str:
-        form = self._text_form
-        return render(
-            "symbolic_state",
-            objects=object_lines(self._view.objects, form),
-            points=point_lines(self._view.points),
-            agent=agent_lines(self._server.agent(), form),
+    def _reply(self, turn: Turn, text: str) -> None:
+        """Remember a turn without an action; every call gets the same answer."""
+        if turn.wishes or turn.message.text.strip():
+            results = [self._result(wish, text) for wish in turn.wishes]
+            self._memory.add_step(turn.message, *results)
+
+    def _why_not(self, wish: Wish, results: Sequence[Result]) -> str:
+        """Why a call is left out; empty if it is to be executed."""
+        if wish.is_finish:
+            return "Finish comes alone, when you have seen what the other calls did"
+        if len(results) >= self._profile.plan:
+            most = self._profile.plan
+            return "one action a turn" if most == 1 else f"at most {most} actions a turn"
+        if self._steps - self._first_step >= self._limits.max_steps:
+            return "the step limit is reached"
+        if results and not results[-1].went_as_planned:
+            return "an earlier call of this turn did not go as planned"
+        return ""
+
+    def _left_out(self, wish: Wish, why_not: str) -> Result:
+        self._tell(LeftOut(self._steps, wish.call.name, why_not))
+        result = self._result(wish, render("not_executed", why=why_not))
+        return replace(result, left_out=why_not)
+
+    def _carry_out(self, wish: Wish) -> Result:
+        if doubt := self._doubts.about_pick(wish):
+            seen = self._execute(action_name(Inspect), wish.arguments)
+            result = self._result(wish, f"{doubt} {seen.feedback.text}")
+            return replace(result, pictures=seen.pictures)
+        done = self._execute(wish.call.name, wish.arguments)
+        return replace(
+            self._result(wish, done.feedback.text),
+            outcome=done.feedback.outcome,
+            view=done.observation,
+            pictures=done.pictures,
         )
 
-    def _ask(self) -> AIMessage:
-        messages = self._memory.messages()
-        reply = self._model.complete(messages, self._tools, self._sampling)
-        self._watch.leave_out(reply.waited_s)
-        message = reply.message
-        self._tell(
-            Thought(
-                self._steps,
-                self._state_text(),
-                len(messages),
-                message.text,
-                message.calls,
-                reply.usage,
-                reply.seconds,
-                reply.waited_s,
-            )
-        )
-        return message
+    def _execute(self, name: str, arguments: Mapping[str, Any] | None) -> ActionResult:
+        started = time.monotonic()
+        result = execute_call(self._server, name, arguments)
+        self._steps += 1
+        self._tell(acted(self._steps, name, arguments, result, time.monotonic() - started))
+        for frame in result.pictures:
+            self._tell(shown(self._steps, frame), frame)
+        if result.observation is not None:
+            self._perceived(result.observation)
+        return result
+
+    def _result(self, wish: Wish, text: str) -> Result:
+        return Result(wish.call.id, wish.call.name, text, self._server.agent())
+
+    def _look_again(self, results: list[Result]) -> None:
+        """With fresh views on, see what a turn has changed since the last view."""
+        if self._profile.fresh_view and self._server.state_hash() != self._seen_state:
+            last = max(i for i, result in enumerate(results) if result.outcome is not None)
+            results[last] = replace(results[last], view=self._observe())
+
+    def _remembered(self, message: AIMessage, results: list[Result]) -> tuple[Any, ...]:
+        """What of a turn goes into the memory: in few words, only the calls that were executed."""
+        reasons = [result.left_out for result in results if result.left_out]
+        done = len(results) - len(reasons)
+        # What a provider keeps with a message belongs to all of its calls.
+        if not (self._profile.terse and reasons and done) or message.kept:
+            return message, *results
+        text = render("left_out", text=results[done - 1].text, count=len(reasons), why=reasons[0])
+        told = [*results[: done - 1], replace(results[done - 1], text=text)]
+        return replace(message, calls=message.calls[:done]), *told
+
+    def _observe(self) -> Observation:
+        return self._perceived(self._server.observe())
+
+    def _perceived(self, view: Observation) -> Observation:
+        self._seen_state = self._server.state_hash()
+        self._tell(observed(self._steps, view), view.frame)
+        return view
 
     def _end(self, reason: TerminationReason, answer: str) -> Ended:
         if reason.is_scored:
             self._server.say(answer)
-        ended = Ended(self._steps, reason, answer, self._server.state_hash(), self._watch.seconds)
+        steps, seconds = self._steps - self._first_step, self._watch.seconds
+        why = next((guard.why for guard in self._guards if guard.verdict() is reason), "")
+        ended = Ended(steps, reason, answer, self._server.state_hash(), seconds, why)
         self._tell(ended)
         return ended
 
     def _tell(self, event: Event, frame: Frame | None = None) -> None:
         for observer in self._observers:
             observer.notify(event, frame)
-
-
-def _final(message: AIMessage) -> TerminationReason:
-    said = bool(message.text.strip())
-    return TerminationReason.ANSWERED if said else TerminationReason.EMPTY_REPLY
-
-
-def _image(frame: Frame) -> ImagePart:
-    return ImagePart(frame.data, frame.media_type, frame.width_px, frame.height_px)
-
-
-def _frame_message(view: Observation) -> HumanMessage:
-    return HumanMessage((TextPart("New view after your Look."), _image(view.frame)))

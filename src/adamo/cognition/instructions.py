@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from adamo.action import tool_schema
+from adamo.cognition.profile import PAPER, SWITCHES, Profile
 from adamo.cognition.prompts import render
 from adamo.engine import SceneInfo
 from adamo.perception import Labeling
@@ -18,7 +19,11 @@ _LABELING = {
 
 
 def system_prompt(
-    scene: SceneInfo, labeling: Labeling, actions: Iterable[type], near_m: float
+    scene: SceneInfo,
+    labeling: Labeling,
+    actions: Iterable[type],
+    near_m: float,
+    profile: Profile = PAPER,
 ) -> str:
     """Render the system prompt.
 
@@ -27,9 +32,11 @@ def system_prompt(
         labeling: How tags are made.
         actions: Action types on offer.
         near_m: What "near" means, metres.
+        profile: Which of the prompt's sentences apply.
     """
     corners = [area for area in scene.areas if area.kind == "corner"]
     schemas = [tool_schema(action) for action in actions]
+    switches = {name: getattr(profile, name) for name in SWITCHES}
     return render(
         "system",
         x_min=f"{scene.x_min:g}",
@@ -39,5 +46,6 @@ def system_prompt(
         corner_m=f"{corners[0].x_max - corners[0].x_min:g}" if corners else "",
         near_m=f"{near_m:g}",
         labeling=_LABELING[labeling],
+        **switches,
         tools=", ".join(f"{s.name}({', '.join(s.parameters['properties'])})" for s in schemas),
     )

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import IO, Annotated, Any, Literal, Protocol
@@ -18,10 +19,12 @@ from typing import IO, Annotated, Any, Literal, Protocol
 from pydantic import Field, TypeAdapter, ValidationError
 
 from adamo.action import Feedback
+from adamo.action_server import ActionResult
 from adamo.cognition.termination import TerminationReason
+from adamo.cognition.turns import reasoning
 from adamo.errors import RecordError
-from adamo.inference.messages import ToolCall
-from adamo.inference.model import Usage
+from adamo.inference.messages import AIMessage, Message, ToolCall
+from adamo.inference.model import Reply, Rung, Usage
 from adamo.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
 
 EVENTS = "events.jsonl"
@@ -65,11 +68,41 @@ class Thought:
     messages: int
     """How many messages the prompt had."""
     note: str
+    """The text of the reply; see also `reasoning`."""
     calls: tuple[ToolCall, ...]
     usage: Usage
     model_s: float
     waited_s: float
+    requests: int = 1
+    cost_usd: float | None = None
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """The decoding settings in effect."""
+    rung: Rung | None = None
+    unreadable: str = ""
+    """Why this is a protocol failure; empty if it is none."""
+    kept: str = ""
+    """What the provider wants back with this answer; see `AIMessage.kept`."""
     type: Literal["thought"] = "thought"
+
+    @property
+    def reply(self) -> Reply:
+        """What the model replied, as it came."""
+        return Reply(
+            AIMessage(self.note, self.calls, self.kept),
+            self.usage,
+            self.model_s,
+            self.waited_s,
+            self.requests,
+            self.cost_usd,
+            self.settings,
+            self.rung,
+            self.unreadable,
+        )
+
+    @property
+    def reasoning(self) -> str:
+        """The reasoning note: the text, or what the calls carry as their note."""
+        return reasoning(self.note, self.calls)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,17 +131,41 @@ class Ended:
     """What the agent said at the end; the fault, if the episode broke."""
     state_hash: str
     seconds: float
+    why: str = ""
+    """Why it was stopped, in words, where there is more to say than the reason."""
     type: Literal["ended"] = "ended"
 
 
-Event = Started | Observed | Thought | Acted | Ended
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A tool showed a picture that is not the view of the eyes, e.g. a close-up."""
+
+    step: int
+    frame: str
+    """File name in `frames/`."""
+    width_px: int
+    height_px: int
+    type: Literal["shown"] = "shown"
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A tool call was not executed; the calls of a turn that are left out are its last ones."""
+
+    step: int
+    name: str
+    why: str
+    type: Literal["left_out"] = "left_out"
+
+
+Event = Started | Observed | Thought | Acted | LeftOut | Shown | Ended
 
 
 class Observer(Protocol):
     """Is told of every event as it happens: records, shows, counts."""
 
     def notify(self, event: Event, frame: Frame | None = None) -> None:
-        """Take note of an event; `frame` comes with `Observed`."""
+        """Take note of an event; `frame` comes with `Observed` and `Shown`."""
         ...
 
 
@@ -126,6 +183,51 @@ def observed(step: int, view: Observation) -> Observed:
     )
 
 
+def thought(step: int, state_text: str, messages: Sequence[Message], reply: Reply) -> Thought:
+    """The event of a model's reply to a prompt."""
+    return Thought(
+        step,
+        state_text,
+        len(messages),
+        reply.message.text,
+        reply.message.calls,
+        reply.usage,
+        reply.seconds,
+        reply.waited_s,
+        reply.requests,
+        reply.cost_usd,
+        reply.settings,
+        reply.rung,
+        reply.unreadable,
+        reply.message.kept,
+    )
+
+
+def acted(
+    step: int,
+    name: str,
+    arguments: Mapping[str, Any] | None,
+    result: ActionResult,
+    world_s: float,
+) -> Acted:
+    """The event of an executed or refused call."""
+    return Acted(
+        step,
+        name,
+        arguments,
+        result.feedback,
+        result.agent,
+        result.state_hash,
+        result.saved,
+        world_s,
+    )
+
+
+def shown(step: int, frame: Frame) -> Shown:
+    """The event of a picture that a tool showed."""
+    return Shown(step, frame_name(frame), frame.width_px, frame.height_px)
+
+
 def frame_name(frame: Frame) -> str:
     """File name of a picture: the hash of its content."""
     suffix = {"image/jpeg": "jpg", "image/png": "png"}[frame.media_type]
@@ -140,20 +242,20 @@ def _codec() -> TypeAdapter[Event]:
 class TrajectoryWriter:
     """Writes events and frames into a run folder, each at once."""
 
-    def __init__(self, folder: Path, *, known: int = 0) -> None:
+    def __init__(self, folder: Path, *, known: Sequence[Event] | None = None) -> None:
         """Open a run folder.
 
         Args:
             folder: Is made if it is missing.
-            known: Go on with an interrupted episode: this many events are in the file already and
-                will come again; they are not written twice.
+            known: Go on with an interrupted episode: these events are the first of the file and
+                will come again; they are not written twice. What the file has after them is lost.
 
         Raises:
             RecordError: It already holds an episode.
         """
-        self._known = known
-        if known:
-            _cut_off_half_line(folder / EVENTS)
+        self._known = deque(known or ())
+        if known is not None:
+            _keep_lines(folder / EVENTS, len(known))
         elif (folder / EVENTS).exists():
             raise RecordError(f"{folder} already holds an episode; choose another --out folder.")
         (folder / FRAMES).mkdir(parents=True, exist_ok=True)
@@ -161,9 +263,19 @@ class TrajectoryWriter:
         self._file: IO[bytes] = (folder / EVENTS).open("ab")
 
     def notify(self, event: Event, frame: Frame | None = None) -> None:
-        """Write an event; its frame first, so that no event names a missing picture."""
+        """Write an event; its frame first, so that no event names a missing picture.
+
+        Raises:
+            RecordError: A known event came out otherwise this time.
+        """
         if self._known:
-            self._known -= 1
+            if not _is_same(event, self._known[0]):
+                raise RecordError(
+                    f"{self._folder} cannot be gone on with: it came out otherwise this time, "
+                    f"{event.type!r} where {self._known[0].type!r} was recorded. Was it recorded "
+                    "by another version or on another kind of machine?"
+                )
+            self._known.popleft()
             return
         if frame is not None:
             path = self._folder / FRAMES / frame_name(frame)
@@ -179,13 +291,17 @@ class TrajectoryWriter:
         self._file.close()
 
 
-def _cut_off_half_line(path: Path) -> None:
-    """Remove what a kill left of a line that was being written."""
-    content = path.read_bytes()
-    whole = content.rfind(b"\n") + 1
-    if whole < len(content):
-        with path.open("r+b") as file:
-            file.truncate(whole)
+def _keep_lines(path: Path, count: int) -> None:
+    """Keep the first lines, without what a kill left of another."""
+    kept = path.read_bytes().splitlines(keepends=True)[:count]
+    with path.open("r+b") as file:
+        file.truncate(sum(map(len, kept)))
+
+
+def _is_same(event: Event, known: Event) -> bool:
+    """Whether an event came again: in the same state, where it tells one."""
+    states = (getattr(event, "state_hash", ""), getattr(known, "state_hash", ""))
+    return event.type == known.type and states[0] == states[1]
 
 
 class Trajectory:
@@ -215,9 +331,15 @@ class Trajectory:
         return [e for e in self.events if isinstance(e, Observed)]
 
     @property
+    def instructions(self) -> list[str]:
+        """Everything the user said, in order; one, unless it was a conversation."""
+        return [e.instruction for e in self.events if isinstance(e, Started)]
+
+    @property
     def ended(self) -> Ended | None:
-        """The last event of a finished episode."""
-        return next((e for e in reversed(self.events) if isinstance(e, Ended)), None)
+        """How it ended; None if the last instruction did not get that far."""
+        last = self.events[-1] if self.events else None
+        return last if isinstance(last, Ended) else None
 
 
 def read_trajectory(folder: Path) -> Trajectory:

@@ -13,7 +13,7 @@
 
   // Each picture is in the page once; small copies borrow it.
   for (const link of all("[data-picture]")) {
-    const source = document.getElementById(`${link.dataset.picture}-view`);
+    const source = document.getElementById(link.dataset.picture);
     if (!source) continue;
     const copy = new Image();
     copy.src = source.src;
@@ -70,12 +70,17 @@
     if (!box.open) box.showModal();
   }
 
+  // The view of a turn, in the turn that shows it.
+  function viewed(turn) {
+    const link = turn.querySelector(".sight [data-picture]");
+    const image = link ? document.getElementById(link.dataset.picture) : turn.querySelector(".sight img");
+    return image && image.closest(".zoom");
+  }
+
   function step(by) {
     go(active + by);
     if (!box.open || stage.classList.contains("map")) return;
-    const link = turns[active].querySelector("[data-picture]");
-    const holder = link ? document.getElementById(link.dataset.picture) : turns[active];
-    const button = holder && holder.querySelector(".zoom");
+    const button = viewed(turns[active]);
     if (button) enlarge(button);
   }
 
@@ -101,9 +106,7 @@
       event.preventDefault();
       step(by);
     } else if (event.key === "Enter" && document.activeElement === turns[active] && !box.open) {
-      const link = turns[active].querySelector("[data-picture]");
-      const holder = link ? document.getElementById(link.dataset.picture) : turns[active];
-      const button = holder && holder.querySelector(".zoom");
+      const button = viewed(turns[active]);
       if (button) enlarge(button);
     }
   });

@@ -2,27 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cache
-from importlib import resources
-from typing import TYPE_CHECKING
-
-from adamo.errors import ConfigError
-
-if TYPE_CHECKING:
-    from jinja2 import Template
-
-
-@cache
-def _template(name: str) -> Template:
-    from jinja2 import Environment, StrictUndefined
-
-    text = (resources.files(__package__) / f"{name}.md").read_text(encoding="utf-8")
-    environment = Environment(undefined=StrictUndefined, autoescape=False, trim_blocks=True)
-    return environment.from_string(text)
+from adamo.inference.prompting import render_from
 
 
 def render(name: str, **variables: object) -> str:
-    """Render a prompt file.
+    """Render a prompt file of this folder.
 
     Args:
         name: File name without ".md".
@@ -31,9 +15,4 @@ def render(name: str, **variables: object) -> str:
     Raises:
         ConfigError: A variable of the file has no value.
     """
-    from jinja2 import UndefinedError
-
-    try:
-        return _template(name).render(**variables).strip()
-    except UndefinedError as error:
-        raise ConfigError(f"prompt {name}.md: {error.message}") from None
+    return render_from(__name__, name, **variables)

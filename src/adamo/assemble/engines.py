@@ -1,0 +1,61 @@
+"""The body: an engine with a scene, and the action server in front of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from adamo.action_server import LEAN_TOOLS, PAPER_TOOLS, LocalActionServer, Tool
+from adamo.benchmark.episode import EpisodeConfig
+from adamo.cognition.profile import Profile
+from adamo.engine import Engine
+from adamo.perception import PerceptionConfig
+
+
+def create_engine(scene: str = "s1", figure: str = "mara") -> Engine:
+    """The built-in engine with a scene.
+
+    Args:
+        scene: Built-in scene or path of a scene file.
+        figure: Who the virtual human is: mara, jonas, amina or ken.
+
+    Raises:
+        SceneError: The scene is unknown or wrong.
+        ConfigError: No figure has this name.
+    """
+    from adamo.runtime.builtin import BuiltinEngine
+
+    return BuiltinEngine(scene, figure)
+
+
+HAND_REACHES_M = 2.07
+"""Height to which the hand reaches; nothing can be put higher."""
+
+
+def tools_of(profile: Profile) -> Sequence[Tool]:
+    """The body's primitives that a profile offers."""
+    return LEAN_TOOLS if profile.closeups else PAPER_TOOLS
+
+
+def open_server(
+    config: EpisodeConfig, engine: Engine, tools: Sequence[Tool] | None = None
+) -> LocalActionServer:
+    """The action server of an episode.
+
+    Args:
+        config: Labeling, grid, resolution and profile.
+        engine: The world, just reset.
+        tools: The body's primitives; those of the profile by default.
+    """
+    perception = PerceptionConfig(
+        labeling=config.labeling,
+        grid=config.grid,
+        points_below_m=HAND_REACHES_M if config.profile.terse else math.inf,
+        points_on_walls=not config.profile.terse,
+    )
+    return LocalActionServer(
+        engine,
+        perception=perception,
+        resolution=config.resolution,
+        tools=tools_of(config.profile) if tools is None else tools,
+    )

@@ -1,0 +1,79 @@
+"""`adamo chat`: a conversation on the terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from adamo.assemble import ChatSession
+from adamo.assemble.episode import chosen_profile, member
+from adamo.benchmark.episode import EpisodeConfig
+from adamo.cli.episode import new_run_folder
+from adamo.cli.progress import Progress
+from adamo.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo.cognition.trajectory import Ended
+from adamo.perception import Labeling
+
+_HELP = "Say what to do; an empty line, /quit or Ctrl-D ends the conversation."
+
+
+def talk(
+    *,
+    resume: Path | None,
+    out: Path | None,
+    record: bool,
+    budget: Budget,
+    profile: str,
+    switches: dict[str, str],
+    labeling: str,
+    **settings: Any,
+) -> None:
+    """Read instructions from the terminal, or from a pipe, until they end."""
+    console = Console()
+    observers = (Progress(console),)
+    guards = (BudgetGuard(Budget(), Ledger(), budget),)
+    if resume is not None:
+        console.print(f"Going back to where {resume} was left ...", style="dim")
+        session = ChatSession.resume(resume, guards=guards, observers=observers)
+        first = None
+    else:
+        first = _ask(console)
+        if first is None:
+            return
+        config = EpisodeConfig(
+            instruction=first,
+            labeling=member(Labeling, labeling, "labeling"),
+            profile=chosen_profile(profile, switches),
+            **settings,
+        )
+        folder = out or new_run_folder(first)
+        session = ChatSession.begin(
+            config, folder, record=record, guards=guards, observers=observers
+        )
+    with session:
+        said = first or _ask(console)
+        while said is not None:
+            _answer(console, session.say(said))
+            said = _ask(console)
+    console.print(f"Kept in {session.folder}; go on with: adamo chat --resume {session.folder}")
+
+
+def _ask(console: Console) -> str | None:
+    """The next instruction; None at the end of the conversation."""
+    try:
+        said = console.input("[bold]you[/bold]         ").strip()
+    except EOFError:
+        console.print()
+        return None
+    return None if said in ("", "/quit", "/exit") else said
+
+
+def _answer(console: Console, ended: Ended) -> None:
+    if ended.answer:
+        console.print("[bold]agent[/bold]      ", end=" ")
+        console.print(ended.answer, markup=False, highlight=False, soft_wrap=True)
+    else:
+        why = f"; {ended.why}" if ended.why else ""
+        console.print(f"(stopped: {ended.reason}{why})", style="yellow", markup=False)

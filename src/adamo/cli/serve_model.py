@@ -1,0 +1,35 @@
+"""`adamo serve-model`."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from adamo.adapters.model_serving import serve_model
+
+if TYPE_CHECKING:
+    from adamo.adapters.openai_endpoint import Served
+
+
+def serve(model: str, host: str, port: int, faults: Path | None, *, tools: bool) -> None:
+    """Serve a model until it is stopped, with a line for each request.
+
+    Raises:
+        ConfigError: A setting is wrong or the port is taken.
+    """
+    with serve_model(model, port, host=host, tools=tools, faults=faults, watch=_tell) as served:
+        typer.echo(f"{served.name} at {served.base_url}")
+        typer.echo(f"try    adamo run --task T1 --model {served.uri}")
+        typer.echo("stop   Ctrl+C")
+        try:
+            threading.Event().wait()
+        except KeyboardInterrupt:
+            typer.echo("stopped")
+
+
+def _tell(served: Served) -> None:
+    status = str(served.status) if served.status else "cut"
+    typer.echo(f"{served.number:5d}  {status:>3}  {served.text}")
