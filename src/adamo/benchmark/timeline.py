@@ -2,9 +2,6 @@
 
 A pure function over the recorded events. A turn begins with the view that the model read, so a
 frame that a `Look` brings belongs to the turn after it.
-
-Calls that were not executed leave no event of their own: which ones, and why, follows from the
-order of what was executed and from the profile.
 """
 
 from __future__ import annotations
@@ -15,10 +12,18 @@ from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from typing import Any
 
-from adamo.action import Outcome
 from adamo.cognition.profile import PAPER, Profile
 from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import Acted, Ended, Observed, Shown, Started, Thought, Trajectory
+from adamo.cognition.trajectory import (
+    Acted,
+    Ended,
+    LeftOut,
+    Observed,
+    Shown,
+    Started,
+    Thought,
+    Trajectory,
+)
 from adamo.cognition.turns import Wish, read_turn
 from adamo.observation import AgentState
 
@@ -167,6 +172,8 @@ class _Draft:
 
     turn: Turn
     acts: list[Acted] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    """Why the calls after these were not executed."""
     pictures: dict[int, list[Shown | Observed]] = field(default_factory=dict)
     """By the step of the act that brought them."""
 
@@ -197,6 +204,9 @@ class _Timeline:
                 self._open(event)
             case Acted():
                 self._acted(event)
+            case LeftOut():
+                if self._draft:
+                    self._draft.left_out.append(event.why)
             case Shown():
                 if self._draft:
                     self._draft.pictures.setdefault(event.step, []).append(event)
@@ -244,7 +254,7 @@ class _Timeline:
         turn, thought = draft.turn, draft.turn.thought
         wishes = read_turn(thought.reply, self._profile).wishes if thought else ()
         closing = wishes[0] if len(wishes) == 1 and wishes[0].is_finish else None
-        deeds = () if closing and not draft.acts else self._deeds(draft, wishes, ended)
+        deeds = () if closing and not draft.acts else self._deeds(draft, wishes)
         note = next((text for text in _notes(thought, wishes) if text), "")
         turn = replace(
             turn,
@@ -257,11 +267,11 @@ class _Timeline:
         tone = _tone(turn, ended, went_on=went_on)
         self.turns.append(replace(turn, tone=tone, label=_label(turn, tone)))
 
-    def _deeds(
-        self, draft: _Draft, wishes: Sequence[Wish], ended: Ended | None
-    ) -> tuple[Deed, ...]:
+    def _deeds(self, draft: _Draft, wishes: Sequence[Wish]) -> tuple[Deed, ...]:
         deeds: list[Deed] = []
-        unreadable = bool(draft.turn.thought and draft.turn.thought.unreadable)
+        unreadable = draft.turn.thought and draft.turn.thought.unreadable
+        unknown = "the answer could not be read" if unreadable else ""
+        left_out = iter(draft.left_out)
         # Calls are executed from the first on, so what was executed stands for the first ones.
         for wish, act in zip_longest(wishes, draft.acts):
             deed = _deed(wish, act)
@@ -269,10 +279,8 @@ class _Timeline:
                 found = draft.pictures.get(act.step, ())
                 pictures = tuple(self._picture(draft.turn.anchor, event) for event in found)
                 deed = replace(deed, pictures=pictures)
-            elif unreadable:
-                deed = replace(deed, left_out="the answer could not be read")
             else:
-                deed = replace(deed, left_out=_why_not(deed, deeds, ended, self._profile))
+                deed = replace(deed, left_out=next(left_out, unknown))
             deeds.append(deed)
         return tuple(deeds)
 
@@ -302,19 +310,6 @@ def _deed(wish: Wish | None, act: Acted | None) -> Deed:
         return Deed(call, wish.note.strip(), wish.confidence, act)
     assert act is not None
     return Deed(CallText.of(act.name, act.arguments), act=act)
-
-
-def _why_not(deed: Deed, before: Sequence[Deed], ended: Ended | None, profile: Profile) -> str:
-    """Why a call was left out, by the agent's own order of reasons; empty if it is not known."""
-    if deed.call.name == "Finish":
-        return "Finish comes alone"
-    if len(before) >= profile.plan:
-        return "one action a turn" if profile.plan == 1 else f"at most {profile.plan} a turn"
-    if ended and ended.reason is TerminationReason.STEP_LIMIT:
-        return "the step limit is reached"
-    if before and before[-1].tone not in (Outcome.DONE, "cut"):
-        return "an earlier call did not go as planned"
-    return ""
 
 
 def _notes(thought: Thought | None, wishes: Sequence[Wish]) -> Iterator[str]:

@@ -12,13 +12,22 @@ from rich.text import Text
 
 from adamo.action import Outcome
 from adamo.cognition.profile import Profile
-from adamo.cognition.trajectory import Acted, Ended, Event, Observed, Shown, Started, Thought
+from adamo.cognition.trajectory import (
+    Acted,
+    Ended,
+    Event,
+    LeftOut,
+    Observed,
+    Shown,
+    Started,
+    Thought,
+)
 from adamo.cognition.turns import Wish, read_turn
 from adamo.observation import Frame
 
 _STYLE = {Outcome.DONE: "green", Outcome.CORRECTED: "yellow", Outcome.REFUSED: "red"}
-_NOTED = Profile(note_argument=True)
-"""Takes the note and the confidence out of the arguments, where they are."""
+_NOTED = Profile(note_argument=True, finish_check=True)
+"""Takes the note and the confidence out of the arguments, where they are, and knows Finish."""
 
 
 class Progress:
@@ -45,6 +54,8 @@ class Progress:
                 self._thought(event)
             case Acted():
                 self._acted(event)
+            case LeftOut():
+                self._left_out(event)
             case Shown():
                 self._line("close-up", f"{event.width_px} x {event.height_px} pixels", "dim")
             case Ended():
@@ -73,7 +84,7 @@ class Progress:
         self._said = wish.answer
 
     def _acted(self, event: Acted) -> None:
-        wish, self._wishes = next(iter(self._wishes), None), self._wishes[1:]
+        wish = self._next_wish()
         if wish is not None and wish.call.name != event.name:
             self._line("not done", f"{_spelt(wish)}: too unsure, so shown close up first", "yellow")
         elif wish is not None:
@@ -81,6 +92,15 @@ class Progress:
         else:
             self._line("call", f"{event.name} {_json(event.arguments)}", "cyan")
         self._line("feedback", event.feedback.text, _STYLE[event.feedback.outcome])
+
+    def _left_out(self, event: LeftOut) -> None:
+        wish = self._next_wish()
+        what = event.name if wish is None or wish.is_finish else _spelt(wish)
+        self._line("not done", f"{what}: {event.why}", "dim")
+
+    def _next_wish(self) -> Wish | None:
+        wish, self._wishes = next(iter(self._wishes), None), self._wishes[1:]
+        return wish
 
     def _settle(self) -> None:
         """Say what became of the last turn, now that something else follows."""

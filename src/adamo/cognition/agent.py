@@ -99,9 +99,7 @@ class Agent:
             while (reason := self._stop()) is None:
                 turn = self.think()
                 if objection := self._doubts.about_turn(turn):
-                    self._reply(turn, objection)
-                    if not turn.wishes:
-                        self._memory.remark(objection)
+                    self._object(turn, objection)
                 elif turn.ends:
                     self._reply(turn, render("said"))
                     return self._end(turn.reason, turn.answer)
@@ -143,6 +141,12 @@ class Agent:
         limit = self._limits.exceeded(self._steps - self._first_step, self._watch.seconds)
         reasons = (limit, *(guard.verdict() for guard in self._guards))
         return next((reason for reason in reasons if reason is not None), None)
+
+    def _object(self, turn: Turn, objection: str) -> None:
+        """Say why a turn is not carried out, or does not end the episode."""
+        self._reply(turn, objection)
+        if not turn.wishes:
+            self._memory.remark(objection)
 
     def _reply(self, turn: Turn, text: str) -> None:
         """Remember a turn without an action; every call gets the same answer."""
@@ -198,7 +202,8 @@ class Agent:
     def _look_again(self, results: list[Result]) -> None:
         """With fresh views on, see what a turn has changed since the last view."""
         if self._profile.fresh_view and self._server.state_hash() != self._seen_state:
-            last = max(i for i, result in enumerate(results) if result.outcome is not None)
+            executed = [i for i, result in enumerate(results) if result.outcome is not None]
+            last = executed[-1] if executed else -1
             results[last] = replace(results[last], view=self._observe())
 
     def _remembered(self, message: AIMessage, results: list[Result]) -> tuple[Any, ...]:

@@ -11,7 +11,6 @@ The memory keeps what happened as data; the prompt is a pure function of it and 
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -96,7 +95,8 @@ class ShortTermMemory:
         self._profile = profile or Profile()
         self._wording = Wording(form, self._profile.terse)
         self._pinned: list[Instruction] = []
-        self._entries: deque[Instruction | Step] = deque(maxlen=k)
+        self._k = k
+        self._entries: list[Instruction | Step] = []
         self._view: Observation | None = None
         self._agent: AgentState | None = None
 
@@ -118,6 +118,10 @@ class ShortTermMemory:
     def add_step(self, message: AIMessage, *results: Result) -> None:
         """Remember what the model said and what came back."""
         self._entries.append(Step(message, results))
+        steps = [i for i, entry in enumerate(self._entries) if isinstance(entry, Step)]
+        if len(steps) > self._k:
+            # With a step goes what was said before it, and the word that it was answered with.
+            del self._entries[: steps[-self._k]]
         for result in results:
             self._view, self._agent = result.view or self._view, result.agent
 
@@ -143,7 +147,7 @@ class ShortTermMemory:
 
     def _kept(self) -> list[Instruction | Step]:
         """The entries of the prompt: the buffer, and the instructions that fell out of it."""
-        buffer = list(self._entries)
+        buffer = self._entries
         fallen = [entry for entry in self._pinned if not any(entry is kept for kept in buffer)]
         return [*fallen, *buffer]
 
@@ -158,7 +162,7 @@ class _Writer:
         self._wording = wording
         self._told = Told(wording)
         kept = profile.pictures
-        # By identity: two views may look the same and still be two.
+        # By identity: two views may look the same and still be two. The last 0 are all of them.
         views = [id(view) for view in _views(entries)]
         shown = [id(frame) for frame in _closeups(entries)]
         self._in_sight = {*views[-kept:], *shown[-kept:]}

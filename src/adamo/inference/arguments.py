@@ -11,6 +11,9 @@ from adamo.inference.messages import ToolCall
 UNREADABLE = "unreadable_arguments"
 """Key under which a model is shown arguments of its own that were no JSON object."""
 
+_DEEPEST = 50
+"""No tool takes arguments that are nested deeper, and records cannot hold what is much deeper."""
+
 
 def read_arguments(raw: str) -> dict[str, Any] | None:
     """Read the arguments as a model wrote them.
@@ -20,13 +23,13 @@ def read_arguments(raw: str) -> dict[str, Any] | None:
 
     Returns:
         The arguments, or None if they are not one strict JSON object (NaN and Infinity are not
-        JSON).
+        JSON), or one that is nested beyond reason.
     """
     try:
         value = json.loads(raw, parse_constant=_refuse) if raw.strip() else {}
     except (ValueError, RecursionError):
         return None
-    if not isinstance(value, dict):
+    if not isinstance(value, dict) or _is_deeper(value, _DEEPEST):
         return None
     return _encodable(value)
 
@@ -53,6 +56,13 @@ def dump_arguments(arguments: Mapping[str, Any]) -> str:
 def encodable_text(text: str) -> str:
     """The text without lone surrogates, which JSON can spell and UTF-8 cannot."""
     return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def _is_deeper(value: Any, levels: int) -> bool:
+    if not isinstance(value, dict | list):
+        return False
+    inner = value.values() if isinstance(value, dict) else value
+    return levels == 0 or any(_is_deeper(item, levels - 1) for item in inner)
 
 
 def _encodable(value: dict[str, Any]) -> dict[str, Any] | None:

@@ -20,7 +20,7 @@ from adamo.errors import CassetteError, RecordError
 from adamo.inference.arguments import encodable_text
 from adamo.inference.calls import Call, Request, clean_reply, codec, request_of, sections
 from adamo.inference.messages import Message
-from adamo.inference.model import Model, ModelKind, Reply, Sampling
+from adamo.inference.model import Model, ModelKind, Reply, Rung, Sampling, close_model
 
 LABEL, CALLS = "cassette.json", "calls.jsonl"
 _VERSION = 1
@@ -96,9 +96,7 @@ class Recorder:
 
     def close(self) -> None:
         """Close the model's connections, if it has any."""
-        close = getattr(self._model, "close", None)
-        if callable(close):
-            close()
+        close_model(self._model)
 
 
 class Cassette:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from adamo.inference.arguments import encodable_text
 from adamo.inference.exchange import Exchange
 from adamo.inference.redaction import redacted
 from adamo.inference.retry import Failure
@@ -166,6 +167,8 @@ def read_error(error: Exception) -> Failure:
         if getattr(error, "phase", None) == "connect":
             return Failure("No connection to the server. Is it running at that address?", True)
         return Failure(f"The connection failed: {_short(str(error))}", True)
+    if isinstance(error, TimeoutError):
+        return Failure("No whole answer came in time.", True)
     if isinstance(error, UserError):
         return Failure(f"The request cannot be made: {_short(str(error))}", False)
     if isinstance(error, ModelAPIError):
@@ -235,6 +238,6 @@ def _server_text(body: object) -> str:
 
 def _short(text: str) -> str:
     """One line without keys; redacted before it is cut, so that no half of a key survives."""
-    text = " ".join(redacted(text).split())
+    text = " ".join(redacted(encodable_text(text)).split())
     text = text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]}..."
     return text if text.endswith((".", "!", "?")) else f"{text}."

@@ -126,3 +126,10 @@ class Model(Protocol):
             ModelError: No answer could be had.
         """
         ...
+
+
+def close_model(model: Model) -> None:
+    """Close a model's connections, if it has any."""
+    close = getattr(model, "close", None)
+    if callable(close):
+        close()

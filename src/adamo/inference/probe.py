@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 
 from adamo.action import ToolSchema
-from adamo.errors import ModelError, ProviderError
+from adamo.errors import ModelError, ProviderError, RefusedError
 from adamo.inference.capabilities import Capabilities, Support, ToolSupport
 from adamo.inference.ladder import Provider
 from adamo.inference.ladder.json_form import JsonForm
@@ -34,7 +34,7 @@ PROBE_RETRY = RetryPolicy(max_tries=3, max_wait_s=60.0, timeout_s=120.0)
 _SAMPLING = Sampling(max_tokens=2000)
 """Room enough for a model that thinks first."""
 
-_COLOURS = {
+COLOURS = {
     "red": (220, 20, 20),
     "green": (20, 140, 40),
     "blue": (25, 50, 215),
@@ -42,6 +42,7 @@ _COLOURS = {
     "black": (0, 0, 0),
     "white": (255, 255, 255),
 }
+"""Colours that it asks for, as red, green and blue."""
 _SIDE_PX = 256
 
 LAMP = ToolSchema(
@@ -82,6 +83,7 @@ class _Probe:
         self._model = model
         self._requests = 0
         self._usage = Usage()
+        self._answers = False
 
     def run(self, model: ProviderModel) -> Capabilities:
         """Ask everything, the most telling things first."""
@@ -112,10 +114,7 @@ class _Probe:
     def _sees_picture(self, colours: tuple[str, str]) -> Support:
         question = HumanMessage((_text("colours"), two_colours(*colours)))
         reply = self._ask([question])
-        if reply is None:
-            self._must_answer()
-            return Support.REFUSED
-        return _named(reply.message.text, colours)
+        return Support.REFUSED if reply is None else _named(reply.message.text, colours)
 
     def _calls_tool(self) -> tuple[ToolSupport, tuple[Message, ...] | None]:
         """Whether it calls a tool, and the conversation up to the call, if it was native."""
@@ -169,8 +168,11 @@ class _Probe:
         """The reply, or None if the request was refused."""
         try:
             reply = self._model.complete(messages, tools, _SAMPLING, schema=schema)
-        except ProviderError:
+        except ProviderError as error:
             self._requests += 1
+            # A server may report as a fault of its own what it does not know, and may be down.
+            if not (self._answers and isinstance(error, RefusedError)):
+                self._must_answer()
             return None
         self._count(reply)
         return reply
@@ -178,15 +180,16 @@ class _Probe:
     def _count(self, reply: Reply) -> None:
         self._requests += reply.requests
         self._usage += reply.usage
+        self._answers = True
 
 
 def two_colours(left: str, right: str) -> ImagePart:
     """A picture of two plain halves."""
     from PIL import Image
 
-    picture = Image.new("RGB", (_SIDE_PX, _SIDE_PX), _COLOURS[left])
+    picture = Image.new("RGB", (_SIDE_PX, _SIDE_PX), COLOURS[left])
     half = _SIDE_PX // 2
-    picture.paste(_COLOURS[right], (half, 0, _SIDE_PX, _SIDE_PX))
+    picture.paste(COLOURS[right], (half, 0, _SIDE_PX, _SIDE_PX))
     data = io.BytesIO()
     picture.save(data, "PNG")
     return ImagePart(data.getvalue(), "image/png", _SIDE_PX, _SIDE_PX)
@@ -194,14 +197,14 @@ def two_colours(left: str, right: str) -> ImagePart:
 
 def _colours(seed: str) -> tuple[tuple[str, str], tuple[str, str]]:
     """Two pairs of colours for a model, always the same, without one in both."""
-    names = sorted(_COLOURS, key=lambda name: hashlib.sha256(f"{seed} {name}".encode()).hexdigest())
+    names = sorted(COLOURS, key=lambda name: hashlib.sha256(f"{seed} {name}".encode()).hexdigest())
     return (names[0], names[1]), (names[2], names[3])
 
 
 def _named(text: str, colours: tuple[str, str]) -> Support:
     """Whether a text names the two colours in their order, before any other."""
     words = "".join(letter if letter.isalpha() else " " for letter in text.lower()).split()
-    named = [word for word in words if word in _COLOURS]
+    named = [word for word in words if word in COLOURS]
     return Support.YES if tuple(named[:2]) == colours else Support.NO
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from threading import Lock
@@ -14,8 +15,8 @@ from adamo.inference.clients import Connection, connect
 from adamo.inference.endpoint import parse_endpoint
 from adamo.inference.exchange import Exchange, sent_settings, watch, watching_client
 from adamo.inference.faults import read_error, read_exchange, refused_setting
-from adamo.inference.messages import Message
-from adamo.inference.model import ModelKind, Reply, Rung, Sampling
+from adamo.inference.messages import AIMessage, Message
+from adamo.inference.model import ModelKind, Reply, Rung, Sampling, Usage
 from adamo.inference.pricing import cost_usd
 from adamo.inference.retry import Failure, RetryPolicy, run_with_retries
 from adamo.inference.settings import EXACT, Settings
@@ -41,6 +42,16 @@ class _Asking:
     """What the last try carried."""
     seconds: float = 0.0
     """How long the last try was on the wire."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Answer:
+    """An answer in neutral words."""
+
+    message: AIMessage
+    leaked: bool
+    """Whether its call was written into the text."""
+    usage: Usage
 
 
 class ProviderModel:
@@ -154,14 +165,9 @@ class ProviderModel:
             lambda: self._try(asking),
             adapt=lambda failure: bool(failure.refused),
         )
-        names = {tool.name for tool in tools}
-        takes = self._connection.takes_thinking
-        message, leaked = from_wire(
-            answer.value, messages, names, self._source, takes_thinking=takes
-        )
-        usage = from_usage(answer.value.usage)
+        usage = answer.value.usage
         return Reply(
-            message,
+            answer.value.message,
             usage,
             # The first use of a library takes seconds to load, which is not the model's time.
             asking.seconds or answer.seconds,
@@ -169,7 +175,7 @@ class ProviderModel:
             requests=asking.requests,
             cost_usd=cost_usd(self._name, usage),
             settings=asking.settings or {},
-            rung=Rung.LEAKED if leaked else Rung.NATIVE,
+            rung=Rung.LEAKED if answer.value.leaked else Rung.NATIVE,
         )
 
     def close(self) -> None:
@@ -189,7 +195,7 @@ class ProviderModel:
         self._http = watching_client(self._retry.timeout_s)
         return connect(self._endpoint, self._http)
 
-    def _try(self, asking: _Asking) -> ModelResponse | Failure:
+    def _try(self, asking: _Asking) -> _Answer | Failure:
         exchange = Exchange(required=EXACT if asking.sampling.exact else ())
         settings = self._settings.wanted(
             asking.sampling,
@@ -199,11 +205,12 @@ class ProviderModel:
         prompt = to_wire(
             asking.messages, self._connection, self._source, one_system=self._settings.one_system
         )
-        outcome: ModelResponse | Failure
+        outcome: _Answer | Failure
         try:
-            outcome = run_in_background(
+            response = run_in_background(
                 self._request(prompt, asking.parameters, settings, exchange)
             )
+            outcome = self._read(response, asking)
         except Exception as error:
             # The libraries' errors have no common base, and an answer that is JSON but no
             # completion ends in any error at all, deep in their reading code. It is handed on as
@@ -221,7 +228,15 @@ class ProviderModel:
             return outcome
         if asking.sampling.exact and refused_setting(exchange, EXACT):
             return _inexact(failure.text)
-        return replace(failure, refused=self._settings.take_refusal(exchange, asking.sampling))
+        return replace(failure, refused=self._settings.take_refusal(exchange, settings, asking.sampling))
+
+    def _read(self, response: ModelResponse, asking: _Asking) -> _Answer:
+        names = {tool.name for tool in asking.parameters.function_tools}
+        takes = self._connection.takes_thinking
+        message, leaked = from_wire(
+            response, asking.messages, names, self._source, takes_thinking=takes
+        )
+        return _Answer(message, leaked, from_usage(response.usage))
 
     async def _request(
         self,
@@ -243,12 +258,14 @@ class ProviderModel:
         limits = ModelSettings(max_retries=0, timeout=timeout_s, request_timeout=timeout_s)
         if self._cache and self.wire == "anthropic":
             limits["cache"] = True
-        return await model_request(
-            client,
-            prompt,
-            model_settings=cast(ModelSettings, {**limits, **known}),
-            model_request_parameters=parameters,
-        )
+        # The libraries' own time-outs begin anew with every byte that trickles in.
+        async with asyncio.timeout(timeout_s):
+            return await model_request(
+                client,
+                prompt,
+                model_settings=cast(ModelSettings, {**limits, **known}),
+                model_request_parameters=parameters,
+            )
 
     async def _open(self) -> Client:
         """The client, ready to send; made anew after it was closed."""

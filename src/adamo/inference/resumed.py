@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from adamo.action import ToolSchema
 from adamo.inference.messages import Message
-from adamo.inference.model import Model, ModelKind, Reply, Sampling
+from adamo.inference.model import Model, ModelKind, Reply, Sampling, close_model
 
 
 class Resumed:
@@ -39,3 +39,7 @@ class Resumed:
         if self._said:
             return self._said.pop(0)
         return self._model.complete(messages, tools, sampling)
+
+    def close(self) -> None:
+        """Close the model's connections, if it has any."""
+        close_model(self._model)

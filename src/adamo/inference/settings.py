@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from threading import Lock
 from typing import Any
 
@@ -67,14 +67,21 @@ class Settings:
         """Whether system text may only come once, at the start."""
         return SEVERAL_SYSTEM in self._refused
 
-    def take_refusal(self, exchange: Exchange, sampling: Sampling) -> str:
+    def take_refusal(
+        self, exchange: Exchange, wanted: Collection[str], sampling: Sampling
+    ) -> str:
         """Remember what an answer refuses.
+
+        Args:
+            exchange: The answer, and what was sent.
+            wanted: Names of the settings that were asked for.
+            sampling: What was wished for.
 
         Returns:
             What it refuses, if the next request will go without it; empty if there is nothing to
             leave out.
         """
-        name = refused_setting(exchange, self._present(exchange, sampling))
+        name = refused_setting(exchange, _removable(exchange, wanted, sampling))
         if name is None:
             return ""
         names = {name}
@@ -84,13 +91,13 @@ class Settings:
             self._refused |= names
         return name
 
-    def _present(self, exchange: Exchange, sampling: Sampling) -> set[str]:
-        """What is in a request and could be left out of the next."""
-        present = set(sent_settings(exchange.sent)) - {"reasoning"}
-        if sampling.exact:
-            present -= {*EXACT}
-        if not self.one_system and "messages" in exchange.sent:
-            messages = exchange.sent["messages"]
-            if [message.get("role") for message in messages].count("system") > 1:
-                present.add(SEVERAL_SYSTEM)
-        return present
+
+def _removable(exchange: Exchange, wanted: Collection[str], sampling: Sampling) -> set[str]:
+    """What is in a request and will not be in the next one, if it is refused."""
+    asked = {*wanted} | ({_OLD_LIMIT} if "extra_body" in wanted else set())
+    # A library may insist on a setting: without it in what was asked for, it cannot be left out.
+    found = asked & {*sent_settings(exchange.sent)}
+    if sampling.exact:
+        found -= {*EXACT}
+    roles = [message.get("role") for message in exchange.sent.get("messages", ())]
+    return found | {SEVERAL_SYSTEM} if roles.count("system") > 1 else found

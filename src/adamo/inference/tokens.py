@@ -35,7 +35,7 @@ from adamo.inference.messages import (
     TextPart,
     ToolMessage,
 )
-from adamo.inference.model import Model, ModelKind, Reply, Sampling, Usage
+from adamo.inference.model import Model, ModelKind, Reply, Sampling, Usage, close_model
 from adamo.inference.text_tokens import estimate_text
 
 __all__ = [
@@ -173,9 +173,7 @@ class Metered:
 
     def close(self) -> None:
         """Close the model's connections, if it has any."""
-        close = getattr(self._model, "close", None)
-        if callable(close):
-            close()
+        close_model(self._model)
 
 
 def _texts(message: Message) -> Iterator[str]:

@@ -32,7 +32,7 @@ _Input = SystemMessage | HumanMessage | ToolMessage
 
 _MADE_UP = "pyd_ai_"
 _NO_RESULT = "Not executed."
-_CAPTION = "Picture from"
+CAPTION = "Picture from"
 """Says whose picture follows, where it cannot be in the result itself."""
 
 
@@ -102,7 +102,7 @@ def _turn(
         inside = connection.pictures_in_results
         parts.append(_result(result, with_pictures=inside))
         if result.images and not inside:
-            shown += [TextPart(f"{_CAPTION} {result.name} ({call.id}):"), *result.images]
+            shown += [TextPart(f"{CAPTION} {result.name} ({call.id}):"), *result.images]
     if shown:
         parts.append(_human(HumanMessage(tuple(shown))))
     answered = {call.id for call in calls}
@@ -253,7 +253,7 @@ def _call(part: wire.ToolCallPart, taken: Collection[str]) -> ToolCall:
     raw = part.args if isinstance(part.args, str) else dump_arguments(part.args or {})
     # Some servers number calls anew in each answer; an id that means two calls confuses others.
     # Some give none; the library then makes one up at random, ours follows from the call.
-    call_id = part.tool_call_id
+    call_id = encodable_text(part.tool_call_id)
     if call_id in taken or call_id.startswith(_MADE_UP):
         call_id = fresh_id(f"{part.tool_name} {raw}", taken)
     name = encodable_text(part.tool_name)

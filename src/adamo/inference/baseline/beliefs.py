@@ -8,7 +8,7 @@ from dataclasses import replace
 from adamo.inference.baseline import ledger
 from adamo.inference.baseline.closeups import closeup_sight
 from adamo.inference.baseline.goals import Description, Plan
-from adamo.inference.baseline.grounding import degree, kind_of, thing_of
+from adamo.inference.baseline.grounding import Beliefs, classify, degree, likeliest, thing_of
 from adamo.inference.baseline.happenings import FAR_M, happened
 from adamo.inference.baseline.memory import Memory, Search, Slot, Thing
 from adamo.inference.baseline.prototypes import class_of
@@ -152,17 +152,21 @@ def _see(prompt: Prompt, plan: Plan, memory: Memory, looked_at: Mapping[str, Sig
         thing.tag: memory.seen_m[thing.tag] < _CLOSER * memory.before_m.get(thing.tag, _NEVER_M)
         for thing in prompt.things
     }
-    for listed in prompt.things:
-        tag, sight = listed.tag, looked_at.get(listed.tag)
-        if class_of(tag) is None and sight and closer[tag]:
-            _take_for(tag, kind_of(tag, listed.volume_cm3, sight), memory)
+    beliefs = {
+        thing.tag: classify(thing.tag, thing.volume_cm3, looked_at.get(thing.tag))
+        for thing in prompt.things
+    }
+    for tag, is_closer in closer.items():
+        if class_of(tag) is None and is_closer and tag in looked_at:
+            _take_for(tag, likeliest(beliefs[tag]), memory)
     everything = tuple(memory.things.values())
     for slot, description in open_slots(plan, memory):
         fits = memory.fits.setdefault(slot, {})
         for tag, nearer in closer.items():
             if tag in memory.inspected or told_by_text(description, tag):
                 continue
-            fit = _fit(description, memory.things[tag], looked_at.get(tag), everything)
+            thing, sight = memory.things[tag], looked_at.get(tag)
+            fit = _fit(description, thing, sight, everything, beliefs[tag])
             # The nearest view is believed; of equally near ones, the most favourable.
             fits[tag] = fit if nearer else max(fit, fits.get(tag, 0.0))
 
@@ -180,12 +184,13 @@ def _see_closely(
     far = sights(prompt).get(tag)
     if far:
         sight = replace(sight, misfits=far.misfits, cut=far.cut, clear=far.clear)
-    _take_for(tag, kind_of(tag, volume, sight), memory)
+    beliefs = classify(tag, volume, sight)
+    _take_for(tag, likeliest(beliefs), memory)
     everything = tuple(memory.things.values())
     for slot, description in open_slots(plan, memory):
         if not told_by_text(description, tag):
             fits = memory.fits.setdefault(slot, {})
-            fits[tag] = _fit(description, memory.things[tag], sight, everything)
+            fits[tag] = _fit(description, memory.things[tag], sight, everything, beliefs)
 
 
 def _take_for(tag: str, kind: str, memory: Memory) -> None:
@@ -197,6 +202,10 @@ def _take_for(tag: str, kind: str, memory: Memory) -> None:
 
 
 def _fit(
-    description: Description, thing: Thing, sight: Sight | None, everything: tuple[Thing, ...]
+    description: Description,
+    thing: Thing,
+    sight: Sight | None,
+    everything: tuple[Thing, ...],
+    beliefs: Beliefs,
 ) -> float:
-    return round(degree(description, thing, sight, everything), 2)
+    return round(degree(description, thing, sight, everything, beliefs), 2)

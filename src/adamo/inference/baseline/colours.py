@@ -44,11 +44,13 @@ def white_level(picture: NDArray[np.uint8], things: NDArray[np.bool_]) -> float:
         picture: (H, W, 3) BGR.
         things: (H, W), pixels of objects; the brightest colourless ones tell the light.
     """
-    pixels = picture[things]
-    pixels = pixels[:: 1 + len(pixels) // _SAMPLES].astype(np.int16)
-    if not len(pixels):
+    places = np.flatnonzero(things)
+    if not len(places):
         return float(_WHITE_FROM[1])
-    high, low = pixels.max(axis=1), pixels.min(axis=1)
+    rows, columns = np.divmod(places[:: 1 + len(places) // _SAMPLES], things.shape[1])
+    blue, green, red = picture[rows, columns].astype(np.int16).T
+    high = np.maximum(np.maximum(blue, green), red)
+    low = np.minimum(np.minimum(blue, green), red)
     pale = high[(high - low) * 255 < _PALE * high]
     brightest = float(np.percentile(pale, 97)) if len(pale) > 50 else 255.0
     return float(np.clip(_SHADE * brightest, *_WHITE_FROM))

@@ -28,6 +28,14 @@ def clipped(box: PixelBox, picture: NDArray[np.generic]) -> tuple[slice, slice]:
     )
 
 
+def brightest(picture: Picture) -> NDArray[np.uint8]:
+    """The brightest channel of each pixel, (H, W)."""
+    import cv2
+
+    blue, green, red = cv2.split(picture)
+    return np.asarray(cv2.max(cv2.max(blue, green), red), np.uint8)
+
+
 def drawn_over(
     picture: Picture,
     boxes: Sequence[PixelBox],
@@ -92,17 +100,20 @@ def _mark_plates(drawn: Mask, picture: Picture, boxes: Sequence[PixelBox]) -> No
         drawn,
     )
     crop = picture[area]
-    ink = cv2.inRange(crop, (0, 0, 0), (INK_BELOW, INK_BELOW, INK_BELOW))
-    letters = cv2.inRange(crop, (_TEXT_FROM,) * 3, (255, 255, 255))
+    ink = cv2.compare(brightest(crop), INK_BELOW + 1, cv2.CMP_LT)
     fill = max(3, round(line_px / 8))
     solid = cv2.morphologyEx(ink, cv2.MORPH_CLOSE, np.ones((fill, 3 * fill), np.uint8))
     solid = cv2.morphologyEx(solid, cv2.MORPH_OPEN, np.ones((round(line_px / 2),) * 2, np.uint8))
-    count, _, stats, _ = cv2.connectedComponentsWithStats(solid)
-    for index in range(1, count):
-        x, y, width, height, size = (int(value) for value in stats[index])
-        if not 0.55 * line_px <= height <= 1.25 * line_px or size < 0.75 * width * height:
+    outlines, _ = cv2.findContours(solid, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
+    for outline in outlines:
+        x, y, width, height = cv2.boundingRect(outline)
+        part = slice(y, y + height), slice(x, x + width)
+        if not 0.55 * line_px <= height <= 1.25 * line_px:
             continue
-        if (letters[y : y + height, x : x + width] > 0).mean() < 0.04:
+        if np.count_nonzero(solid[part]) < 0.75 * width * height:
+            continue
+        letters = cv2.inRange(crop[part], (_TEXT_FROM,) * 3, (255, 255, 255))
+        if np.count_nonzero(letters) < 0.04 * letters.size:
             continue
         edge = max(3, round(line_px / 8))
         box = (x - edge, y - edge, x + width + edge, y + height + edge)

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo.geometry import Camera
-from adamo.inference.baseline.drawn import Picture, PixelBox
+from adamo.inference.baseline.drawn import Picture, PixelBox, brightest
 from adamo.inference.baseline.state_text import Listed
 
 Counts = NDArray[np.int32]
 Places = NDArray[np.intp]
+Shares = NDArray[np.float64]
 
 _STEP = 30
 """Least difference in brightness between a line and its rims."""
@@ -87,26 +88,28 @@ def _lines(picture: Picture, width: int) -> tuple[Counts, Counts]:
     import cv2
 
     # A line is never dark: its brightest channel stands out on any ground.
-    value = np.asarray(
-        cv2.max(cv2.max(picture[..., 0], picture[..., 1]), picture[..., 2]), np.uint8
-    )
-    upright = cv2.integral(_starts(value, width))
-    level = cv2.integral(np.ascontiguousarray(_starts(np.ascontiguousarray(value.T), width).T))
+    value = brightest(picture)
+    upright, level = (cv2.integral(_starts(value, width, axis)) for axis in (1, 0))
     return np.asarray(upright, np.int32), np.asarray(level, np.int32)
 
 
-def _starts(value: NDArray[np.uint8], width: int) -> NDArray[np.uint8]:
-    """1 at the first of ``width`` bright pixels in a row with a dark one on either side."""
+def _starts(value: NDArray[np.uint8], width: int, axis: int) -> NDArray[np.uint8]:
+    """1 at the first of ``width`` bright pixels along an axis with a dark one on either side."""
     import cv2
 
-    found = np.zeros(value.shape, np.uint8)
-    inner = slice(1, value.shape[1] - width)
-    bright = value[:, inner]
+    end = value.shape[axis] - width
+
+    def along(first: int, last: int) -> tuple[slice, ...]:
+        return (slice(None),) * axis + (slice(first, last),)
+
+    bright = value[along(1, end)]
     if width > 1:
-        bright = np.minimum(bright, value[:, width : value.shape[1] - 1])
-    rims = cv2.max(value[:, : inner.stop - 1], value[:, 1 + width :])
-    found[:, inner] = (cv2.subtract(bright, rims) > _STEP) & (rims < _RIM_BELOW)
-    return found
+        bright = np.asarray(cv2.min(bright, value[along(width, end + width - 1)]), np.uint8)
+    rims = cv2.max(value[along(0, end - 1)], value[along(1 + width, end + width)])
+    stands_out = cv2.compare(cv2.subtract(bright, rims), _STEP, cv2.CMP_GT)
+    found = np.zeros(value.shape, np.uint8)
+    found[along(1, end)] = cv2.bitwise_and(stands_out, cv2.compare(rims, _RIM_BELOW, cv2.CMP_LT))
+    return np.asarray(cv2.min(found, 1), np.uint8)
 
 
 def _line_px(height_px: int) -> int:
@@ -140,16 +143,11 @@ def _box_around(
     a, b = spans_x[:, None, 0], spans_x[:, None, 1]
     c, d = spans_y[None, :, 0], spans_y[None, :, 1]
     wide, tall = (b - a).astype(float), (d - c).astype(float)
-    covered = np.stack(
-        [
-            _column(upright, a, c, d) / tall,
-            _column(upright, b, c, d) / tall,
-            _column(level.T, c, a, b) / wide,
-            _column(level.T, d, a, b) / wide,
-        ]
-    )
-    mean = covered.mean(axis=0)
-    good = (covered.min(axis=0) >= _COVERED) & (mean >= _MEAN_COVERED)
+    lefts, rights = _covered(upright, columns, spans_x, spans_y)
+    tops, bottoms = _covered(level.T, rows, spans_y, spans_x)
+    mean = ((lefts + rights) + (tops + bottoms).T) / 4
+    least = np.minimum(np.minimum(lefts, rights), np.minimum(tops, bottoms).T)
+    good = (least >= _COVERED) & (mean >= _MEAN_COVERED)
     if not good.any():
         return None
     off = np.abs((a + b) / 2 - u) / wide + np.abs((c + d) / 2 - v) / tall
@@ -158,6 +156,16 @@ def _box_around(
     top, bottom = (int(y) for y in spans_y[j])
     inside = line_px + 1
     return left + inside, top + inside, right - 1, bottom - 1
+
+
+def _covered(
+    sums: Counts, lines: Places, pairs: Places, spans: Places
+) -> tuple[Shares, Shares]:
+    """Shares of the two lines of each pair that are covered within each span, (pairs, spans)."""
+    first, last = spans[:, 0], spans[:, 1]
+    shares = _column(sums, lines[:, None], first, last) / (last - first)
+    at = np.searchsorted(lines, pairs)
+    return shares[at[:, 0]], shares[at[:, 1]]
 
 
 def _crossing(

@@ -90,7 +90,11 @@ def _print_misfit(prototype: Prototype, sight: Sight) -> float:
 
 
 def degree(
-    description: Description, thing: Thing, sight: Sight | None, others: Sequence[Thing]
+    description: Description,
+    thing: Thing,
+    sight: Sight | None,
+    others: Sequence[Thing],
+    beliefs: Beliefs | None = None,
 ) -> float:
     """How well a thing fits a description.
 
@@ -99,6 +103,7 @@ def degree(
         thing: The candidate.
         sight: Its pixels, if looked at.
         others: All things known, for "from the floor" or "standing near the plate".
+        beliefs: What it may be, if that was found out already.
 
     Returns:
         0 (does not fit) to 1 (fits in every respect).
@@ -106,7 +111,7 @@ def degree(
     if description.ids:
         bare = thing.tag.lower().rsplit("_", 1)[-1]
         return 1.0 if {bare, thing.tag.lower()} & set(description.ids) else 0.0
-    beliefs = classify(thing.tag, thing.volume_cm3, sight)
+    beliefs = beliefs or classify(thing.tag, thing.volume_cm3, sight)
     factors = _factors(description, thing, beliefs, sight)
     if description.source:
         factors.append(_from_there(description.source, thing, others))
@@ -217,9 +222,8 @@ def _from_there(
     return 1.0 if near and min(near) < _NEAR_SOURCE_M else 0.1
 
 
-def kind_of(tag: str, volume_cm3: float, sight: Sight | None) -> str:
+def likeliest(beliefs: Beliefs) -> str:
     """What a thing most probably is."""
-    beliefs = classify(tag, volume_cm3, sight)
     return max(beliefs, key=lambda name: beliefs[name])
 
 
@@ -231,4 +235,4 @@ def thing_of(tag: str, position: Vec3, volume_cm3: float, kind: str = "") -> Thi
 
 @lru_cache(maxsize=512)
 def _kind_by_volume(tag: str, volume_cm3: float) -> str:
-    return kind_of(tag, volume_cm3, None)
+    return likeliest(classify(tag, volume_cm3, None))

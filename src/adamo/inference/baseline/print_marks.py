@@ -21,15 +21,17 @@ def print_share(crop: NDArray[np.uint8], mask: NDArray[np.bool_]) -> float:
     """
     import cv2
 
-    if mask.sum() < 200:
+    size = np.count_nonzero(mask)
+    if size < 200:
         return 0.0
     grey = cv2.cvtColor(crop, cv2.COLOR_BGR2GRAY)
     inner = cv2.erode(mask.astype(np.uint8), np.ones((5, 5), np.uint8))
     kernel = cv2.getStructuringElement(cv2.MORPH_RECT, (7, 1))
     dark = cv2.morphologyEx(grey, cv2.MORPH_BLACKHAT, kernel)
     bright = cv2.morphologyEx(grey, cv2.MORPH_TOPHAT, kernel)
-    strokes = ((np.maximum(dark, bright) > _CONTRAST) & (inner > 0)).astype(np.uint8)
+    strong = cv2.compare(cv2.max(dark, bright), _CONTRAST, cv2.CMP_GT)
+    strokes = cv2.bitwise_and(strong, strong, mask=inner)
     # Letters stand side by side: closing sideways joins them to words, single edges stay thin.
     words = cv2.morphologyEx(strokes, cv2.MORPH_CLOSE, np.ones((1, 9), np.uint8))
     words = cv2.morphologyEx(words, cv2.MORPH_OPEN, np.ones((2, 9), np.uint8))
-    return float(words.sum() / mask.sum())
+    return float(np.count_nonzero(words) / size)

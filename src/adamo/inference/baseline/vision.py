@@ -8,14 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from adamo.geometry import Camera
 from adamo.inference.baseline.colours import shares, white_level
-from adamo.inference.baseline.drawn import INK_BELOW, Mask, Picture, PixelBox, clipped, drawn_over
+from adamo.inference.baseline.drawn import (
+    INK_BELOW,
+    Mask,
+    Picture,
+    PixelBox,
+    brightest,
+    clipped,
+    drawn_over,
+)
 from adamo.inference.baseline.drawn_boxes import with_boxes
 from adamo.inference.baseline.print_marks import print_share
 from adamo.inference.baseline.reading import Listed, Prompt
@@ -113,7 +121,10 @@ def _looked_at(
     visible = [thing for thing in things if thing.box_px]
     masks = {t.tag: _solid(picture, drawn, t, things) for t in visible}
     white = _white(picture, masks, visible)
-    return {t.tag: _look_at(picture, masks[t.tag], t, white, camera) for t in visible}
+    sizes = misfits(visible, camera) if camera else {}
+    return {
+        t.tag: _look_at(picture, masks[t.tag], t, white, sizes.get(t.tag, {})) for t in visible
+    }
 
 
 def _solid(
@@ -143,10 +154,9 @@ def own_pixels(
     own = ~drawn[area] if part is None else part & ~drawn[area]
     if not own.any():
         return own, 0.0
-    behind = _behind(picture, drawn, box, picture[area])
-    solid = own & ~behind
-    clear = float((own & behind).sum() / own.sum())
-    return (solid if solid.sum() >= _LEAST_PIXELS else own), clear
+    solid = own & ~_behind(picture, drawn, box)
+    size, left = np.count_nonzero(own), np.count_nonzero(solid)
+    return (solid if left >= _LEAST_PIXELS else own), (size - left) / size
 
 
 def _white(picture: Picture, masks: Masks, things: list[Listed]) -> float:
@@ -163,7 +173,7 @@ def _look_at(
     mask: tuple[Mask, float],
     thing: Listed,
     white_from: float,
-    camera: Camera | None,
+    sizes: Mapping[str, float],
 ) -> Sight:
     assert thing.box_px is not None
     left, top, right, bottom = thing.box_px
@@ -176,12 +186,12 @@ def _look_at(
     coarse = solid[::step, ::step]
     height, width = picture.shape[:2]
     return Sight(
-        pixels=int(solid.sum()),
+        pixels=int(np.count_nonzero(solid)),
         colours=shares(np.ascontiguousarray(crop[::step, ::step]), coarse, white_from),
         text=print_share(crop, solid),
         roundness=roundness(coarse),
         clear=clear,
-        misfits=misfits(thing, camera) if camera else {},
+        misfits=sizes,
         cut=left <= 1 or top <= 1 or right >= width - 1 or bottom >= height - 1,
     )
 
@@ -197,41 +207,57 @@ def _own_part(thing: Listed, things: tuple[Listed, ...], shape: tuple[int, ...])
             continue
         x0, y0, x1, y1 = other.box_px
         own[clipped((x0 - left, y0 - top, x1 - left, y1 - top), own)] = False
-    return own if own.mean() > 0.15 else np.ones(shape[:2], bool)
+    return own if np.count_nonzero(own) > 0.15 * own.size else np.ones(shape[:2], bool)
 
 
-def _behind(picture: Picture, drawn: Mask, box: PixelBox, crop: Picture) -> Mask:
+def _behind(picture: Picture, drawn: Mask, box: PixelBox) -> Mask:
     """Pixels of a box that have the colours of the frame around it."""
     import cv2
 
     ring_px = max(4, round(_RING_PX * picture.shape[0] / 1080))
     left, top, right, bottom = box
     outer = clipped((left - ring_px, top - ring_px, right + ring_px, bottom + ring_px), drawn)
-    usable = ~drawn[outer]
-    inner_top, inner_left = top - outer[0].start, left - outer[1].start
-    usable[inner_top : inner_top + bottom - top, inner_left : inner_left + right - left] = False
-    around = picture[outer][usable]
-    around = around[around.max(axis=1) > INK_BELOW]  # tags are no background, nor is anything ink
+    rows, columns = (
+        slice(part.start - whole.start, part.stop - whole.start)
+        for part, whole in zip(clipped(box, drawn), outer, strict=True)
+    )
+    codes = _codes(picture[outer])
+    # Tags are no background, nor is anything ink.
+    usable = ~drawn[outer] & (brightest(picture[outer]) > INK_BELOW)
+    usable[rows, columns] = False
+    around = codes[usable]
+    inside = codes[rows, columns]
     if len(around) < 30:
-        return np.zeros(crop.shape[:2], bool)
-    counts = np.zeros((_BINS,) * 3, np.float32)
-    np.add.at(counts, tuple(_bins(around).T), 1.0)
+        return np.zeros(inside.shape, bool)
+    counts = np.bincount(around, minlength=_BINS**3).reshape((_BINS,) * 3)
     for axis in range(3):  # JPEG and shading move colours to neighbouring bins
         counts = counts + np.roll(counts, 1, axis) + np.roll(counts, -1, axis)
-    likely = counts > 0.02 * len(around)
-    bins = _bins(crop.reshape(-1, 3))
-    found = likely[bins[:, 0], bins[:, 1], bins[:, 2]].reshape(crop.shape[:2])
-    return np.asarray(cv2.medianBlur(found.astype(np.uint8), 3), bool)
+    likely = (counts.ravel() > 0.02 * len(around)).astype(np.uint8)
+    return np.asarray(cv2.medianBlur(likely[inside], 3), bool)
 
 
-def _bins(pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
-    """Bins by brightness and by two colour differences, so that shading matters less."""
+def _codes(pixels: Picture) -> NDArray[np.int16]:
+    """Numbers of bins, (H, W).
+
+    The bins are by brightness and by two colour differences, so that shading matters less.
+    """
     import cv2
 
-    lab = cv2.cvtColor(pixels.reshape(-1, 1, 3), cv2.COLOR_BGR2LAB).reshape(-1, 3).astype(np.int32)
-    lab[:, 0] = lab[:, 0] * _BINS // 256
-    lab[:, 1:] = np.clip((lab[:, 1:] - 128) // 5 + _BINS // 2, 0, _BINS - 1)
-    return lab
+    channels = cv2.split(cv2.cvtColor(pixels, cv2.COLOR_BGR2LAB))
+    light, *hues = (
+        cv2.LUT(channel, table) for channel, table in zip(channels, _bin_tables(), strict=True)
+    )
+    return np.asarray(cv2.add(cv2.add(light, hues[0]), hues[1]), np.int16)
+
+
+@cache
+def _bin_tables() -> tuple[NDArray[np.int16], ...]:
+    """What each value of each channel adds to the number of a bin."""
+    values = np.arange(256)
+    light = values * _BINS // 256
+    hue = np.clip((values - 128) // 5 + _BINS // 2, 0, _BINS - 1)
+    scales = ((light, _BINS**2), (hue, _BINS), (hue, 1))
+    return tuple((bins * scale).astype(np.int16) for bins, scale in scales)
 
 
 def roundness(mask: Mask) -> float:
@@ -250,5 +276,5 @@ def roundness(mask: Mask) -> float:
     full, fitted = np.zeros(mask.shape, np.uint8), np.zeros(mask.shape, np.uint8)
     cv2.drawContours(full, [hull], -1, 1, -1)
     cv2.ellipse(fitted, ellipse, 1, -1)
-    union = int((full | fitted).sum())
-    return float((full & fitted).sum() / union) if union else 0.0
+    union = np.count_nonzero(full | fitted)
+    return np.count_nonzero(full & fitted) / union if union else 0.0
