@@ -80,7 +80,7 @@ class Drop:
 
 @dataclass(frozen=True, slots=True)
 class Inspect:
-    """See an object in view close up, large enough to read what is printed on it."""
+    """See an object in view or in hand close up, large enough to read what is printed on it."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
 

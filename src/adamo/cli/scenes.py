@@ -70,14 +70,14 @@ def check(file: str, out: Path | None, *, as_json: bool) -> None:
 def _inspected(file: str, out: Path | None) -> tuple[str, tuple[SceneFinding, ...], list[Path]]:
     """Name, findings and pictures; what cannot be simulated gets no pictures."""
     from adamo.runtime.scenes.arrangement import inspect_arrangement
-    from adamo.runtime.scenes.inspection import inspect_scene, load_engine
+    from adamo.runtime.scenes.inspection import inspect_scene
 
     try:
         scene = load_scene(file)
         findings = inspect_arrangement(scene)
         if any(finding.blocks for finding in findings):
             return scene.name, findings, []
-        engine = load_engine(scene)
+        engine = BuiltinEngine(scene)
     except SceneError as fault:
         if not Path(file).is_file():
             raise

@@ -33,15 +33,6 @@ _LONGEST_PX, _SHORTEST_PX = 1600, 200
 _MARGIN = 1.08
 
 
-def load_engine(scene: Scene) -> BuiltinEngine:
-    """Settle a scene that may be wrong.
-
-    Raises:
-        SceneError: The physics cannot take it.
-    """
-    return BuiltinEngine(scene)
-
-
 def inspect_scene(
     scene: Scene, engine: BuiltinEngine, time_limit_s: float = 60.0
 ) -> tuple[SceneFinding, ...]:
