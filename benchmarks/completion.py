@@ -15,9 +15,11 @@ import statistics
 from typing import Any
 
 import adamo
-from adamo.assemble import create_player
+from adamo.assemble.players import create_player, fitting
 from adamo.benchmark.tasks import TASKS
 from adamo.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo.cognition.profile import PROFILES
+from adamo.inference.model import close_model
 from adamo.inference.tokens import Metered
 
 
@@ -33,7 +35,6 @@ def main() -> None:
     parser.add_argument("--budget-usd", type=float, help="cap on the whole run")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
-    player = Metered(create_player(arguments.model))
     ledger, caps = Ledger(), Budget(usd=arguments.budget_usd)
     rows: list[dict[str, Any]] = []
     for scene in arguments.scene or ["s1"]:
@@ -44,16 +45,20 @@ def main() -> None:
             arguments.task or [item.id for item in TASKS],
         )
         for profile, labeling, task in cells:
+            # What may be asked of a model depends on the profile.
+            player = create_player(arguments.model, profile=PROFILES[profile])
+            chosen = fitting(PROFILES[profile], player)
             result = adamo.run_episode(
                 task=task,
                 scene=scene,
                 labeling=labeling,
-                profile=profile,
-                model=player,
+                profile=chosen,
+                model=Metered(player),
                 seed=arguments.seed,
                 guards=[BudgetGuard(Budget(), ledger, caps)],
                 engine=engine,
             )
+            close_model(player)
             row = {
                 "scene": scene,
                 "profile": profile,

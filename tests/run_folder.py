@@ -26,6 +26,7 @@ from adamo.cognition.termination import TerminationReason
 from adamo.cognition.trajectory import (
     Acted,
     Ended,
+    LeftOut,
     Started,
     Thought,
     TrajectoryWriter,
@@ -133,6 +134,9 @@ class Recorder:
         self.writer.notify(
             Acted(self.step, name, arguments, feedback, self.agent, digest, "{}", 0.31)
         )
+
+    def left_out(self, name: str, why: str) -> None:
+        self.writer.notify(LeftOut(self.step, name, why))
 
     def end(self, answer: str, reason: TerminationReason = TerminationReason.ANSWERED) -> None:
         if reason is TerminationReason.ANSWERED:

@@ -8,7 +8,7 @@ import pytest
 from tests.fake_provider import FakeProvider, call, completion
 
 import adamo
-from adamo.assemble import forecast_episodes
+from adamo.assemble.forecasting import forecast_episodes
 from adamo.benchmark.episode import EpisodeConfig, read_manifest, read_result
 from adamo.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo.cognition.forecast import Forecast

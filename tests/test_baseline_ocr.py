@@ -11,8 +11,9 @@ from tests.baseline_room import TOOLS, TextRoom
 
 from adamo.geometry import Vec3
 from adamo.inference.baseline import BaselineModel
+from adamo.inference.baseline.classes import classify
 from adamo.inference.baseline.grammar import understand
-from adamo.inference.baseline.grounding import classify, degree, thing_of
+from adamo.inference.baseline.grounding import degree, thing_of
 from adamo.inference.baseline.ocr import PrintReader, installed
 from adamo.inference.baseline.sight import Sight
 from adamo.inference.baseline.words import named_kinds

@@ -8,7 +8,7 @@ import pytest
 from tests.baseline_rewordings import REWORDINGS
 
 from adamo.action import ToolSchema
-from adamo.assemble import run_episode
+from adamo.assemble.episode import run_episode
 from adamo.benchmark.tasks import TASKS
 from adamo.cognition.termination import TerminationReason
 from adamo.inference.baseline import BaselineModel

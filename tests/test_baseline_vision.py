@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import cv2
 import numpy as np
 import pytest
 
 from adamo.geometry import Camera, Vec3
+from adamo.inference.baseline.classes import classify
 from adamo.inference.baseline.colours import shares
-from adamo.inference.baseline.drawn import drawn_over
+from adamo.inference.baseline.drawn import brightest, drawn_over
 from adamo.inference.baseline.grammar import understand
-from adamo.inference.baseline.grounding import classify, degree, thing_of
+from adamo.inference.baseline.grounding import degree, thing_of
 from adamo.inference.baseline.print_marks import print_share
 from adamo.inference.baseline.prototypes import prototypes
 from adamo.inference.baseline.reading import Body, Listed, Prompt, Room
@@ -121,7 +123,7 @@ def test_lines_and_tags_are_left_out():
     cv2.rectangle(frame, (396, 296), (484, 384), (40, 240, 170), 2)
     cv2.rectangle(frame, (400, 270), (440, 288), (22, 18, 16), -1)
     cv2.putText(frame, "57", (408, 286), 0, 0.5, (250, 250, 250), 1, cv2.LINE_AA)
-    drawn = drawn_over(frame, [box], [], None)
+    drawn = drawn_over(frame, brightest(frame), [box], [], None)
     assert drawn[280, 405]
     assert drawn[297, 440]
     assert not drawn[340, 440]
@@ -147,9 +149,30 @@ def test_a_silhouette_fits_its_own_kind(name):
     pixels = CAMERA.project(at.array() + sides * (length, width, height))[:, :2]
     left, top = (int(v) for v in pixels.min(axis=0))
     right, bottom = (int(v) for v in pixels.max(axis=0))
-    found = misfits(Listed("7", at, prototype.volume_cm3, (left, top, right, bottom)), CAMERA)
+    thing = Listed("7", at, prototype.volume_cm3, (left, top, right, bottom))
+    found = misfits([thing], CAMERA)["7"]
     assert found[name] < 0.2
     assert found[name] <= min(found.values()) + 0.2
+
+
+def test_things_before_the_very_eyes_are_not_judged_by_their_size():
+    far, near = listed("1", Vec3(0.0, -0.8, 0.8), 40), CAMERA.position + Vec3(0.1, 0.0, 0.0)
+    found = misfits([far, Listed("2", near, 800.0, (0, 0, 700, 700))], CAMERA)
+    assert set(found) == {"1"}
+    assert set(found["1"]) == set(prototypes())
+
+
+def test_what_surrounds_a_thing_does_not_change_how_large_its_kinds_would_look():
+    one, other = listed("1", Vec3(0.0, -0.8, 0.8), 40), listed("2", Vec3(0.2, -1.3, 0.1), 25)
+    assert misfits([one, other], CAMERA)["1"] == misfits([one], CAMERA)["1"]
+
+
+def test_outlines_are_measured_only_when_asked_for():
+    frame, thing = picture(), listed("1", Vec3(0.0, -0.8, 0.8), 40)
+    disc(frame, thing, "red")
+    full = sights(prompt(frame, [thing]))["1"]
+    without = sights(prompt(frame, [thing]), outlines=False)["1"]
+    assert without == replace(full, roundness=0.0)
 
 
 def _framed(frame: np.ndarray, thing: Listed, colour: tuple[int, int, int]) -> None:

@@ -92,7 +92,6 @@ def test_the_same_requests_get_the_same_replies(folder: Path) -> None:
     assert (cassette.name, cassette.model) == (f"cassette:{folder}", "openai:gpt-4o")
     assert (cassette.kind, len(cassette)) == (ModelKind.VLM, 2)
     assert (ask(cassette), ask(cassette, SECOND)) == REPLIES
-    assert cassette.pictures_differ == 0
 
 
 def test_pictures_are_kept_by_hash_and_size_alone(folder: Path) -> None:
@@ -103,11 +102,10 @@ def test_pictures_are_kept_by_hash_and_size_alone(folder: Path) -> None:
     assert "first frame" not in text
 
 
-def test_a_picture_with_other_bytes_is_only_counted(folder: Path) -> None:
+def test_a_picture_with_other_bytes_is_the_same_request(folder: Path) -> None:
     other = dataclasses.replace(FRAME, data=b"drawn elsewhere")
     cassette = Cassette(folder)
     assert ask(cassette, (FIRST[0], HumanMessage((TextPart("Pick the plate."), other))))
-    assert cassette.pictures_differ == 1
 
 
 def test_every_call_is_on_disk_before_the_next(tmp_path: Path) -> None:
@@ -235,7 +233,7 @@ def test_a_resumed_recording_goes_on_behind_what_was_answered(folder: Path) -> N
     cassette = Cassette(folder)
     assert len(cassette) == 2
     assert (ask(cassette), ask(cassette, SECOND)) == REPLIES
-    with pytest.raises(RecordError, match="holds 2 calls; 5 were answered"):
+    with pytest.raises(RecordError, match="holds 2 calls, and 5 were answered"):
         Recorder(Answering(), folder, known=5)
     stranger = Answering()
     stranger.name = "openai:other"
@@ -301,7 +299,6 @@ def test_a_whole_episode_runs_again_from_its_cassette(
     assert [act.state_hash for act in replayed.acts] == [act.state_hash for act in recorded.acts]
     assert [turn.note for turn in replayed.thoughts] == [turn.note for turn in recorded.thoughts]
     assert len(cassette) == len(recorded.thoughts) > 2
-    assert cassette.pictures_differ == 0
     assert cassette.kind is ModelKind.RULE_BASED
 
 
@@ -313,3 +310,9 @@ def test_another_instruction_ends_the_replay_with_what_differs(
     assert not ended.reason.is_scored
     for part in ("call 1: message", "(human) differs", "-Pick the plate", "+Pick the glass"):
         assert part in ended.answer
+
+
+def test_a_cassette_is_found_in_its_run_folder_and_knows_how_it_was_asked(tmp_path: Path) -> None:
+    ask(Recorder(Answering(), tmp_path / "cassette"))
+    cassette = Cassette(tmp_path)
+    assert (len(cassette), cassette.rung) == (1, Rung.NATIVE)

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from adamo.assemble import ChatSession, replay_episode, run_episode
+from adamo.assemble.chat import ChatSession
+from adamo.assemble.episode import run_episode
+from adamo.assemble.replaying import replay_episode
 from adamo.benchmark.episode import EpisodeConfig
 from adamo.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo.cognition.profile import PROFILES

@@ -10,6 +10,7 @@ from tests.brain import Brain
 from tests.fake_provider import FakeProvider, fault
 from typer.testing import CliRunner
 
+from adamo.assemble.episode import run_episode
 from adamo.cli.app import app
 from adamo.errors import ModelConfigError
 
@@ -90,3 +91,11 @@ def test_the_baseline_needs_no_server() -> None:
 def test_an_unknown_model_is_refused_with_a_list_of_the_known() -> None:
     with pytest.raises(ModelConfigError, match="openai:NAME"):
         check("nosuch:thing")
+
+
+def test_a_recorded_run_needs_no_server(tmp_path: Path) -> None:
+    run_episode("Look around", resolution=(128, 72), out=tmp_path / "run", record=True)
+    for kind in ("replay", "cassette"):
+        code, text = check(f"{kind}:{tmp_path / 'run'}")
+        assert code == 0
+        assert "nothing to check" in text

@@ -21,7 +21,13 @@ from adamo.inference.registry import create_model
 def test_an_unknown_model_is_refused_with_a_list_of_the_known(uri: str) -> None:
     with pytest.raises(ModelConfigError) as caught:
         create_model(uri)
-    for known in ("baseline", "random:SEED", "scripted:FILE.json", "cassette:DIR", "openai:NAME"):
+    for known in (
+        "baseline",
+        "random:SEED",
+        "scripted:FILE.json",
+        "cassette:RUN_DIR",
+        "openai:NAME",
+    ):
         assert known in str(caught.value)
 
 

@@ -226,3 +226,69 @@ def test_a_second_instruction_goes_on_in_the_same_world(engine: BuiltinEngine) -
     texts = [m.parts[0] for m in player.prompts[-1] if isinstance(m, HumanMessage)]
     assert len(texts) == 2
     assert trajectory.instructions == ["Take the plate", "Now put it on the floor"]
+
+
+@pytest.mark.parametrize(
+    "odd",
+    [
+        {"confidence": 10**400, "object": "Plate_57"},
+        {"confidence": "high", "note": ["a", 1], "object": "Plate_57"},
+        {"confidence": None, "note": None, "object": ["Plate_57"]},
+        {"confidence": -3, "object": {"tag": "Plate_57"}},
+        {"confidence": 0.1},
+        {},
+        None,
+    ],
+)
+@pytest.mark.parametrize("name", ["Pick", "Inspect", "Survey", "", "Nothing"])
+def test_odd_arguments_are_feedback(engine: BuiltinEngine, name: str, odd: Any) -> None:
+    ended, _, _ = play(engine, [says((name, odd), (name, odd)), finish()], TERSE)
+    assert ended.reason is TerminationReason.ANSWERED
+
+
+@pytest.mark.parametrize("said", [None, {}, {"answer": ["x"]}, {"answer": 1, "confidence": 9e99}])
+def test_an_odd_end_is_asked_back_once(engine: BuiltinEngine, said: Any) -> None:
+    odd = says(("Finish", said))
+    ended, _, player = play(engine, [odd, odd])
+    assert len(player.prompts) == 2
+    assert player.results(1)[0].text.startswith("Refused: ")
+    assert ended.reason in (TerminationReason.ANSWERED, TerminationReason.EMPTY_REPLY)
+
+
+def test_replies_that_lead_to_nothing_are_a_loop(engine: BuiltinEngine) -> None:
+    both = Reply(AIMessage("", (*finish().message.calls, *says(PICK).message.calls)))
+    ended, trajectory, _ = play(engine, lambda _: both)
+    assert ended.reason is TerminationReason.LOOP
+    assert len(trajectory.thoughts) == Limits().max_repeats
+
+
+def test_without_the_check_finish_is_no_tool(engine: BuiltinEngine) -> None:
+    ended, trajectory, _ = play(
+        engine, [finish(), says(text="Done.")], replace(LEAN, finish_check=False)
+    )
+    assert [act.feedback.code for act in trajectory.acts] == ["unknown_tool"]
+    assert ended.answer == "Done."
+
+
+def test_a_doubtful_pick_out_of_view_is_told_so(engine: BuiltinEngine) -> None:
+    away = noted("Look", x=-2.9, y=-1.0, z=1.5)
+    unsure = noted("Pick", 0.3, object="57")
+    _, trajectory, player = play(engine, [says(away, unsure), says(unsure), finish()])
+    assert [act.name for act in trajectory.acts] == ["Look", "Inspect", "Pick"]
+    assert "Refused: Plate_57 is not in view now" in player.results(1)[1].text
+    assert engine.state().body.held == 57
+
+
+def test_a_view_that_a_call_brought_is_not_taken_again(engine: BuiltinEngine) -> None:
+    look = noted("Look", x=0.0, y=-1.0, z=0.8)
+    see = noted("Inspect", object="Plate_57")
+    _, trajectory, _ = play(engine, [says(look, see, NOWHERE), finish()])
+    assert len(trajectory.views) == 2
+
+
+def test_what_is_asked_back_says_how_to_go_on(engine: BuiltinEngine) -> None:
+    odd = Reply(AIMessage("blah"), unreadable="there is no Action.")
+    _, _, player = play(engine, [Reply(AIMessage("")), odd, finish()])
+    told = [m.text for m in player.prompts[-1] if isinstance(m, HumanMessage)][1:]
+    assert len(told) == 2
+    assert all(text.endswith("call Finish.") and "short note" not in text for text in told)

@@ -192,3 +192,15 @@ def test_a_remark_is_a_word_of_the_user_without_a_picture() -> None:
 def test_no_steps_at_all_is_refused() -> None:
     with pytest.raises(ConfigError, match="at least 1"):
         ShortTermMemory("rules", 0)
+
+
+def test_words_in_between_are_no_steps() -> None:
+    memory, _ = filled(2, [(1, False), (1, False)])
+    for _ in range(3):
+        memory.remark("go on")
+    notes = [m.text for m in memory.messages() if isinstance(m, AIMessage)]
+    assert notes == ["note 0", "note 1"]
+    memory.add_step(*_flat(step(2, None)))
+    memory.add_step(*_flat(step(3, None)))
+    texts = [m.text for m in memory.messages() if isinstance(m, HumanMessage)]
+    assert texts == ["do it"]

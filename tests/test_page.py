@@ -296,6 +296,7 @@ def test_only_the_first_call_of_a_message_counts(tmp_path: Path) -> None:
     calls = (ToolCall("a", "Pick", {"object": "4"}), ToolCall("b", "Pick", {"object": "57"}))
     run.think("Two at once.", *calls)
     run.acted("Pick", {"object": "4"}, Feedback(Outcome.DONE, Code.OK, "Done: it is in your hand."))
+    run.left_out("Pick", "one action a turn")
     (turn,) = turns(read_trajectory(tmp_path))
     assert [str(deed.call) for deed in turn.deeds] == ['Pick(object="4")', 'Pick(object="57")']
     assert [deed.left_out for deed in turn.deeds] == ["", "one action a turn"]

@@ -143,6 +143,18 @@ def test_a_server_that_dies_on_the_way_is_not_taken_for_a_poor_one(own_cache: Pa
     assert not list(own_cache.rglob("*.json"))
 
 
+def test_a_rate_limit_on_the_way_is_not_taken_for_a_refusal(own_cache: Path) -> None:
+    brain = Brain()
+
+    def busy(request: Json) -> Canned:
+        return brain(request) if not brain.asked else fault(429, "slow down")
+
+    with FakeProvider(busy) as server, pytest.raises(ModelError, match="slow down"):
+        create_model(server.uri(), QUICK)
+    assert len(server.requests) == 1 + 2 * QUICK.max_tries
+    assert not list(own_cache.rglob("*.json"))
+
+
 def test_what_was_found_is_kept_for_the_next_time() -> None:
     brain = Brain(tools="400")
     with FakeProvider(brain) as server:

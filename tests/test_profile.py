@@ -10,6 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from adamo.action import Drop, Inspect, Look, Pick, Survey, Walk
+from adamo.action_server import LEAN_TOOLS, PAPER_TOOLS
+from adamo.assemble.players import fitting
 from adamo.benchmark.conditions import NEAR_M
 from adamo.cognition.instructions import system_prompt
 from adamo.cognition.profile import PAPER, PROFILES, SWITCHES, Profile, StateText, profile
@@ -18,6 +20,7 @@ from adamo.cognition.turns import FINISH, offered, read_turn, reasoning
 from adamo.errors import ConfigError
 from adamo.inference.messages import AIMessage, ToolCall
 from adamo.inference.model import Reply
+from adamo.inference.scripted import ScriptedModel
 from adamo.perception import Labeling
 from adamo.runtime.scenes import load_scene
 
@@ -101,10 +104,10 @@ def test_the_prompt_says_what_is_on_and_nothing_else(chosen: Profile) -> None:
 
 @given(profiles)
 def test_the_tools_ask_for_what_is_on(chosen: Profile) -> None:
-    tools = {tool.name: tool for tool in offered(BODY, chosen)}
+    tools = {tool.name: tool for tool in offered((*BODY, Inspect, Survey), chosen)}
     assert (FINISH in tools) == chosen.finish_check
     for tool in tools.values():
-        required = tool.parameters["required"]
+        required = tool.parameters.get("required", [])
         assert (required[:2] == ["note", "confidence"]) == chosen.note_argument
         assert set(required) <= set(tool.parameters["properties"])
 
@@ -140,3 +143,14 @@ def test_what_ends_an_episode() -> None:
     assert not read_turn(reply(("Look", {}), (FINISH, finish)), LEAN).ends
     assert read_turn(reply(), PAPER).reason is TerminationReason.EMPTY_REPLY
     assert not read_turn(replace(reply(text="Hm"), unreadable="no action"), PAPER).ends
+
+
+def test_a_number_of_any_size_is_a_confidence() -> None:
+    said = [reply(("Pick", {"confidence": value})) for value in (10**400, -3, 0.25)]
+    assert [read_turn(r, LEAN).wishes[0].confidence for r in said] == [1.0, 0.0, 0.25]
+
+
+def test_without_the_tools_for_close_ups_there_are_none() -> None:
+    player = ScriptedModel("s", ())
+    assert fitting(LEAN, player, PAPER_TOOLS) == profile("lean", {"closeups": False})
+    assert fitting(LEAN, player, LEAN_TOOLS) == fitting(LEAN, player) == LEAN

@@ -11,7 +11,16 @@ from rich.console import Console
 from adamo.action import Code, Feedback, Outcome
 from adamo.cli.progress import Progress
 from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import Acted, Ended, Event, Observed, Shown, Started, Thought
+from adamo.cognition.trajectory import (
+    Acted,
+    Ended,
+    Event,
+    LeftOut,
+    Observed,
+    Shown,
+    Started,
+    Thought,
+)
 from adamo.geometry import Vec3
 from adamo.inference.messages import ToolCall
 from adamo.inference.model import Usage
@@ -83,6 +92,7 @@ def test_a_plan_says_its_note_once_and_what_was_left_out() -> None:
         thought(0, "", *looks),
         acted(1, "Look", {"x": 0}),
         acted(2, "Look", {"x": 1}, Outcome.CORRECTED),
+        LeftOut(2, "Look", "a surprise"),
         ended(TerminationReason.LOOP),
     )
     assert told == [
@@ -91,7 +101,7 @@ def test_a_plan_says_its_note_once_and_what_was_left_out() -> None:
         "feedback Done: Look.",
         'call Look {"x": 1} (confidence 1)',
         "feedback Corrected: Look.",
-        'not done Look {"x": 2} (confidence 1)',
+        'not done Look {"x": 2} (confidence 1): a surprise',
     ]
 
 

@@ -160,3 +160,16 @@ def test_whether_a_result_may_hold_pictures_depends_on_the_model() -> None:
     assert (result.kind, result.text) == ("result", "See the picture.")
     assert caption.text == "Picture from Inspect (a):"
     assert (picture.role, picture.data) == ("user", SECOND.data)
+
+
+@pytest.mark.parametrize(
+    "address", ["127.0.0.1:8000", "localhost/v1", "//gpu.lan:80/v1", "[::1]:8000/v1"]
+)
+def test_an_address_without_its_scheme_is_not_taken_for_a_name(address: str) -> None:
+    """Else the key would go to the provider, and the prompts too."""
+    with pytest.raises(ModelConfigError, match="openai:tiny@http://"):
+        parse_endpoint(f"openai:tiny@{address}")
+
+
+def test_a_name_may_have_an_at_sign() -> None:
+    assert parse_endpoint("google-vertex:claude@20250101").model == "claude@20250101"

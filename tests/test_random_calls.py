@@ -95,7 +95,7 @@ def test_without_anything_to_do_it_ends():
 
 
 def test_odd_messages_do_not_stop_it():
-    messages = [
+    messages: list[Message] = [
         SystemMessage("?"),
         HumanMessage((TextPart(""),)),
         AIMessage("x"),

@@ -150,6 +150,34 @@ def test_a_conversation_arrives_as_it_was_meant() -> None:
     assert {"top_p", "image_url"} <= asked.parameters
 
 
+def test_pictures_behind_the_results_come_back_into_them() -> None:
+    def call(name: str) -> Any:
+        about = {"name": "Pick", "arguments": "{}"}
+        return {"id": name, "type": "function", "function": about}
+
+    shown = picture(picture_uri((5, 4)))
+    told = [
+        {"type": "text", "text": "Picture from Pick (b):"},
+        shown,
+        {"type": "text", "text": "Go on."},
+        shown,
+    ]
+    messages = [
+        user("Take both."),
+        {"role": "assistant", "content": None, "tool_calls": [call("a"), call("b")]},
+        {"role": "tool", "tool_call_id": "a", "content": "Done."},
+        {"role": "tool", "tool_call_id": "b", "content": "Done."},
+        user(told[:2]),
+        user(told),
+    ]
+    found = read_request({"model": "m", "messages": messages}).messages
+    assert [message.role for message in found] == ["human", "ai", "tool", "tool", "human"]
+    first, second, rest = found[2:]
+    assert isinstance(first, ToolMessage) and not first.images
+    assert isinstance(second, ToolMessage) and len(second.images) == 2
+    assert isinstance(rest, HumanMessage) and rest.text == "Go on." and len(rest.parts) == 2
+
+
 @pytest.mark.parametrize(
     ("choice", "names"),
     [

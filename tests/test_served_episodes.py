@@ -66,6 +66,14 @@ def test_the_baseline_plays_the_same_over_the_network(engine: BuiltinEngine, tas
     assert result.tokens > 0
 
 
+@pytest.mark.parametrize("task", ["T4", "T8"])
+def test_it_plays_the_lean_profile_the_same(engine: BuiltinEngine, task: str) -> None:
+    with serve_model("baseline") as served:
+        model = ProviderModel(served.uri, QUICK, several_calls=True)
+        result = compare(engine, model, task=task, profile="lean", resolution=SMALL)
+    assert result.completion == 1.0
+
+
 def test_its_eyes_see_the_same_over_the_network(engine: BuiltinEngine) -> None:
     with serve_model("baseline") as served:
         model = ProviderModel(served.uri, QUICK)

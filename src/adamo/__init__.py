@@ -8,13 +8,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from adamo.assemble import (
-        ChatSession,
-        create_engine,
-        replay_episode,
-        resume_episode,
-        run_episode,
-    )
+    from adamo.assemble.chat import ChatSession
+    from adamo.assemble.engines import create_engine
+    from adamo.assemble.episode import resume_episode, run_episode
+    from adamo.assemble.replaying import replay_episode
     from adamo.benchmark.episode import EpisodeConfig, EpisodeResult
     from adamo.cognition.budget import Budget
     from adamo.cognition.profile import Profile
@@ -36,14 +33,14 @@ __all__ = [
 _HOME = {
     "AdamoError": "adamo.errors",
     "Budget": "adamo.cognition.budget",
-    "ChatSession": "adamo.assemble",
+    "ChatSession": "adamo.assemble.chat",
     "EpisodeConfig": "adamo.benchmark.episode",
     "EpisodeResult": "adamo.benchmark.episode",
     "Profile": "adamo.cognition.profile",
-    "create_engine": "adamo.assemble",
-    "replay_episode": "adamo.assemble",
-    "resume_episode": "adamo.assemble",
-    "run_episode": "adamo.assemble",
+    "create_engine": "adamo.assemble.engines",
+    "replay_episode": "adamo.assemble.replaying",
+    "resume_episode": "adamo.assemble.episode",
+    "run_episode": "adamo.assemble.episode",
 }
 
 

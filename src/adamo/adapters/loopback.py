@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-import ipaddress
 import socket
 
 from adamo.errors import ConfigError
-
-
-def is_loopback(host: str) -> bool:
-    """Whether a host name or address is this machine's own."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
+from adamo.inference.endpoint import is_loopback
 
 
 def listen(host: str, port: int) -> socket.socket:

@@ -18,7 +18,6 @@ from adamo.adapters.broken_connections import HalfBody, Hang, Reset
 from adamo.adapters.fault_rules import Faults, Rule, What
 from adamo.adapters.injected_faults import GARBAGE, error_message, is_as_it_is, spoiled
 from adamo.adapters.json_fields import BadRequest
-from adamo.adapters.loopback import is_loopback
 from adamo.adapters.openai_messages import ChatRequest, read_request
 from adamo.adapters.openai_replies import (
     Answer,
@@ -30,6 +29,7 @@ from adamo.adapters.openai_replies import (
 )
 from adamo.adapters.probe_answers import answer_to_probe
 from adamo.errors import AdamoError, CassetteError
+from adamo.inference.endpoint import is_loopback
 from adamo.inference.messages import AIMessage
 from adamo.inference.model import Model
 

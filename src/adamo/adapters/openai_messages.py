@@ -13,6 +13,7 @@ from typing import Any
 
 from adamo.action import ToolSchema
 from adamo.adapters.json_fields import BadRequest, child, choice_of, items, mapping, number, text
+from adamo.adapters.result_pictures import with_result_pictures
 from adamo.inference.arguments import encodable_text, read_arguments
 from adamo.inference.messages import (
     AIMessage,
@@ -59,7 +60,7 @@ def read_request(body: Any) -> ChatRequest:
     body = mapping(body, "body")
     if (count := number(body, "n")) is not None and count != 1:
         raise BadRequest("n", "only 1 choice is given; leave n out or set it to 1.")
-    messages = _messages(items(body, "messages"))
+    messages = with_result_pictures(_messages(items(body, "messages")))
     schema, streams = _schema(body), mapping(body.get("stream_options") or {}, "stream_options")
     names = {name for name, value in body.items() if value is not None}
     if any(isinstance(p, ImagePart) for m in messages for p in _parts_of(m)):

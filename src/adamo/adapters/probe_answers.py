@@ -19,15 +19,8 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-
-_COLOURS = {
-    "red": (220, 20, 20),
-    "green": (20, 140, 40),
-    "blue": (25, 50, 215),
-    "yellow": (250, 225, 20),
-    "black": (0, 0, 0),
-    "white": (255, 255, 255),
-}
+from adamo.inference.probe import COLOURS, LAMP
+from adamo.inference.prompts import render
 
 
 def answer_to_probe(messages: Sequence[Message], tools: Sequence[ToolSchema]) -> AIMessage | None:
@@ -42,23 +35,15 @@ def answer_to_probe(messages: Sequence[Message], tools: Sequence[ToolSchema]) ->
     if question not in _questions():
         return None
     pictures = [part for message in messages for part in _pictures(message)]
-    offered = [tool for tool in tools if tool.name == _lamp().name]
+    offered = any(tool.name == LAMP.name for tool in tools)
     if offered and not any(isinstance(message, ToolMessage) for message in messages):
-        return AIMessage("", (ToolCall("call_probe", _lamp().name, {"lamp": "desk"}),))
+        return AIMessage("", (ToolCall("call_probe", LAMP.name, {"lamp": "desk"}),))
     return AIMessage(_halves(pictures[-1]) if pictures else "ready")
 
 
 @cache
 def _questions() -> frozenset[str]:
-    from adamo.inference.prompts import render
-
     return frozenset(render(f"probe_{name}") for name in ("colours", "tool", "schema", "word"))
-
-
-def _lamp() -> ToolSchema:
-    from adamo.inference.probe import LAMP
-
-    return LAMP
 
 
 def _pictures(message: Message) -> list[ImagePart]:
@@ -83,6 +68,6 @@ def _named(colour: object) -> str:
     values = colour if isinstance(colour, tuple) else (0, 0, 0)
 
     def distance(name: str) -> int:
-        return sum(abs(one - int(other)) for one, other in zip(_COLOURS[name], values, strict=True))
+        return sum(abs(one - int(other)) for one, other in zip(COLOURS[name], values, strict=True))
 
-    return min(_COLOURS, key=distance)
+    return min(COLOURS, key=distance)

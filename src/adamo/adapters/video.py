@@ -37,7 +37,7 @@ _FOLLOW = 0.1
 """Share of the way to its ideal place that the camera goes in each frame."""
 _INK, _PAPER, _CALL = (236, 232, 224), (24, 24, 27), (150, 190, 250)
 _COLOURS = {"done": (142, 206, 142), "corrected": (232, 200, 110), "refused": (236, 128, 118)}
-_NOTED = Profile(note_argument=True)
+_NOTED = Profile(note_argument=True, finish_check=True)
 """Takes the note and the confidence out of the arguments, where they are."""
 
 _Line = tuple[str, str, tuple[int, int, int]]

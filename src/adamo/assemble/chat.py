@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
 from adamo.assemble.engines import create_engine
 from adamo.assemble.episode import create_agent, describe, resumed_player
-from adamo.assemble.players import CASSETTE, close_player, create_player, fitting
+from adamo.assemble.players import create_player, fitting
 from adamo.benchmark.episode import MANIFEST, EpisodeConfig, read_manifest, write_record
 from adamo.benchmark.page import write_page
 from adamo.cognition.guards import Guard
@@ -19,9 +20,8 @@ from adamo.cognition.trajectory import (
     TrajectoryWriter,
     read_trajectory,
 )
-from adamo.errors import RecordError
-from adamo.inference.cassette import Recorder
-from adamo.inference.model import Model
+from adamo.inference.cassette import FOLDER, Recorder
+from adamo.inference.model import Model, close_model
 from adamo.observation import Frame
 
 
@@ -39,7 +39,7 @@ class ChatSession:
         folder: Path,
         model: Model,
         *,
-        known: int = 0,
+        known: Sequence[Event] | None = None,
         record: bool = False,
         guards: Sequence[Guard] = (),
         observers: Sequence[Observer] = (),
@@ -51,22 +51,27 @@ class ChatSession:
             folder: Run folder for the record.
             model: Who thinks; closed with the session.
             record: Also keep every request and reply of the model, as a cassette.
-            known: Events that are recorded already and will come again.
+            known: Events that are recorded already and will come again; None begins a new record.
             guards: Further reasons to stop.
             observers: Are told of every event that is not known yet.
         """
         self.folder = folder
-        self._player = model
-        self._writer = TrajectoryWriter(folder, known=known)
-        self._engine = create_engine(config.scene, config.figure)
-        self._engine.reset(config.seed)
-        if not known:
-            write_record(folder, MANIFEST, describe(config, model, self._engine))
-        if record:
-            model = Recorder(model, folder / CASSETTE)
-        later = [_FromThen(observer, known) for observer in observers]
-        heard: tuple[Observer, ...] = (self._writer, *later)
-        self._agent = create_agent(config, model, self._engine, None, guards, heard)
+        with ExitStack() as stack:
+            stack.callback(close_model, model)
+            engine = create_engine(config.scene, config.figure)
+            stack.callback(engine.close)
+            engine.reset(config.seed)
+            writer = TrajectoryWriter(folder, known=known)
+            stack.callback(writer.close)
+            if known is None:
+                write_record(folder, MANIFEST, describe(config, model, engine))
+            if record:
+                model = Recorder(model, folder / FOLDER)
+            before = known or ()
+            later = [_FromThen(observer, len(before)) for observer in observers]
+            heard: tuple[Observer, ...] = (writer, *later)
+            self._agent = create_agent(config, model, engine, None, guards, heard, before)
+            self._open = stack.pop_all()
 
     @classmethod
     def begin(
@@ -116,19 +121,16 @@ class ChatSession:
         """
         path = Path(folder)
         manifest, recorded = read_manifest(path), read_trajectory(path)
-        if not recorded.events:
-            raise RecordError(f"{path} holds no instruction yet; begin a new conversation.")
-        player = resumed_player(path, manifest.config, recorded, None)
-        session = cls(
-            manifest.config,
-            path,
-            player,
-            known=len(recorded.events),
-            guards=guards,
-            observers=observers,
-        )
-        for instruction in recorded.instructions:
-            session.say(instruction)
+        config, known = manifest.config, recorded.events
+        player = resumed_player(path, config, recorded, None)
+        session = cls(config, path, player, known=known, guards=guards, observers=observers)
+        try:
+            for instruction in recorded.instructions:
+                session._agent.run(instruction)
+            write_page(path)
+        except BaseException:
+            session.close()
+            raise
         return session
 
     def say(self, instruction: str) -> Ended:
@@ -139,9 +141,7 @@ class ChatSession:
 
     def close(self) -> None:
         """End the conversation; it can be resumed from its folder."""
-        self._writer.close()
-        close_player(self._player)
-        self._engine.close()
+        self._open.close()
 
     def __enter__(self) -> ChatSession:
         """The session itself."""

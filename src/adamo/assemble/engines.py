@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from adamo.action_server import LEAN_TOOLS, PAPER_TOOLS, LocalActionServer, Tool
-from adamo.benchmark.episode import EpisodeConfig
-from adamo.cognition.profile import Profile
 from adamo.engine import Engine
 from adamo.perception import PerceptionConfig
+
+if TYPE_CHECKING:
+    from adamo.benchmark.episode import EpisodeConfig
+    from adamo.cognition.profile import Profile
+
+HAND_REACHES_M = 2.07
+"""Height to which the hand reaches; nothing can be put higher."""
 
 
 def create_engine(scene: str = "s1", figure: str = "mara") -> Engine:
@@ -26,10 +32,6 @@ def create_engine(scene: str = "s1", figure: str = "mara") -> Engine:
     from adamo.runtime.builtin import BuiltinEngine
 
     return BuiltinEngine(scene, figure)
-
-
-HAND_REACHES_M = 2.07
-"""Height to which the hand reaches; nothing can be put higher."""
 
 
 def tools_of(profile: Profile) -> Sequence[Tool]:

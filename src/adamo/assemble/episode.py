@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -13,7 +14,7 @@ from typing import Any, TypeVar
 from adamo.action_server import Tool
 from adamo.assemble.engines import create_engine, open_server
 from adamo.assemble.forecasting import forecast_episodes
-from adamo.assemble.players import CASSETTE, close_player, create_player, fitting
+from adamo.assemble.players import create_player, fitting
 from adamo.benchmark.conditions import NEAR_M
 from adamo.benchmark.episode import (
     MANIFEST,
@@ -30,17 +31,23 @@ from adamo.benchmark.tasks import task as find_task
 from adamo.cognition.agent import Agent, AgentConfig
 from adamo.cognition.budget import Budget, BudgetGuard
 from adamo.cognition.forecast import Forecast
-from adamo.cognition.guards import Guard
+from adamo.cognition.guards import AsRecorded, Guard
 from adamo.cognition.instructions import system_prompt
 from adamo.cognition.profile import Profile
 from adamo.cognition.profile import profile as find_profile
 from adamo.cognition.termination import Limits
-from adamo.cognition.trajectory import Observer, Trajectory, TrajectoryWriter, read_trajectory
+from adamo.cognition.trajectory import (
+    Event,
+    Observer,
+    Trajectory,
+    TrajectoryWriter,
+    read_trajectory,
+)
 from adamo.engine import Engine
 from adamo.errors import ConfigError, RecordError
 from adamo.inference.capabilities import capabilities_of
-from adamo.inference.cassette import Recorder
-from adamo.inference.model import Model, ModelKind, Sampling
+from adamo.inference.cassette import FOLDER, Cassette, Recorder
+from adamo.inference.model import Model, ModelKind, Sampling, close_model
 from adamo.inference.resumed import Resumed
 from adamo.perception import Labeling, TextForm
 
@@ -141,26 +148,26 @@ def run_episode(
         if not isinstance(model, str)
         else create_player(model, tools=tool_calls, profile=chosen)
     )
-    config = replace(config, profile=fitting(chosen, player))
-    folder = None if out is None else Path(out)
-    writer = None if folder is None else TrajectoryWriter(folder)
-    world = engine or create_engine(config.scene, config.figure)
-    try:
+    config = replace(config, profile=fitting(chosen, player, tools))
+    with ExitStack() as stack:
+        if isinstance(model, str):
+            stack.callback(close_model, player)
+        world = engine or create_engine(config.scene, config.figure)
+        if engine is None:
+            stack.callback(world.close)
         world.reset(config.seed)
         manifest = describe(config, player, world)
-        if announce is not None and player.kind is ModelKind.VLM:
+        is_asked = player.kind is ModelKind.VLM and not isinstance(player, Cassette)
+        if announce is not None and is_asked:
             announce(forecast_episodes(config, world))
-        if folder is not None:
+        kept = None
+        if out is not None:
+            folder = Path(out)
+            kept = (TrajectoryWriter(folder), folder)
             write_record(folder, MANIFEST, manifest)
-        if folder is not None and record:
-            player = Recorder(player, folder / CASSETTE)
-        kept = None if writer is None or folder is None else (writer, folder)
+            if record:
+                player = Recorder(player, folder / FOLDER)
         return _play(manifest, player, world, kept, tools, (guards, observers))
-    finally:
-        if isinstance(model, str):
-            close_player(player)
-        if engine is None:
-            world.close()
 
 
 def chosen_profile(name: str | Profile, switches: Mapping[str, Any] | None) -> Profile:
@@ -185,8 +192,9 @@ def create_agent(
     tools: Sequence[Tool] | None,
     guards: Sequence[Guard],
     observers: Sequence[Observer],
+    known: Sequence[Event] = (),
 ) -> Agent:
-    """The agent of an episode, on an engine that was just reset."""
+    """The agent of an episode, on an engine that was just reset; what is known comes again."""
     server = open_server(config, engine, tools)
     profile = config.profile
     return Agent(
@@ -194,7 +202,7 @@ def create_agent(
         server,
         system_prompt(engine.scene, config.labeling, server.actions, NEAR_M, profile),
         AgentConfig(profile, config.k, config.text_form, config.sampling, config.limits),
-        guards=(BudgetGuard(config.budget), *guards),
+        guards=(AsRecorded(known, (BudgetGuard(config.budget), *guards)),),
         observers=observers,
     )
 
@@ -206,13 +214,14 @@ def _play(
     kept: tuple[TrajectoryWriter, Path] | None,
     tools: Sequence[Tool] | None,
     watchers: tuple[Sequence[Guard], Sequence[Observer]],
+    known: Sequence[Event] = (),
 ) -> EpisodeResult:
     """Play an episode on an engine that was just reset, and write its result."""
     trajectory = Trajectory()
     writer, folder = kept or (None, None)
     guards, others = watchers
     observers = (*((writer,) if writer else ()), trajectory, *others)
-    agent = create_agent(manifest.config, model, engine, tools, guards, observers)
+    agent = create_agent(manifest.config, model, engine, tools, guards, observers, known)
     try:
         agent.run(manifest.config.instruction)
     finally:
@@ -265,22 +274,27 @@ def resume_episode(
         observers: Are told of every event, the repeated ones too.
 
     Raises:
-        RecordError: The folder holds no run, or one that has ended.
+        RecordError: The folder holds no run, or one that has ended, or a conversation.
     """
     path = Path(folder)
     manifest, recorded = read_manifest(path), read_trajectory(path)
+    if len(recorded.instructions) > 1:
+        raise RecordError(f"{path} is a conversation; go on with: adamo chat --resume {path}")
+    known = recorded.events
     if recorded.ended is not None:
-        raise RecordError(f"{path} has ended ({recorded.ended.reason}); nothing is left to resume.")
-    player = resumed_player(path, manifest.config, recorded, model)
-    writer = TrajectoryWriter(path, known=len(recorded.events))
-    engine = create_engine(manifest.config.scene, manifest.config.figure)
-    try:
-        engine.reset(manifest.config.seed)
-        return _play(manifest, player, engine, (writer, path), tools, (guards, observers))
-    finally:
+        if (path / RESULT).exists():
+            reason = recorded.ended.reason
+            raise RecordError(f"{path} has ended ({reason}); nothing is left to resume.")
+        known = known[:-1]  # Its result is missing: let it end once more.
+    with ExitStack() as stack:
+        player = resumed_player(path, manifest.config, recorded, model)
         if model is None:
-            close_player(player)
-        engine.close()
+            stack.callback(close_model, player)
+        engine = create_engine(manifest.config.scene, manifest.config.figure)
+        stack.callback(engine.close)
+        engine.reset(manifest.config.seed)
+        kept = (TrajectoryWriter(path, known=known), path)
+        return _play(manifest, player, engine, kept, tools, (guards, observers), known)
 
 
 def resumed_player(
@@ -291,6 +305,6 @@ def resumed_player(
     live = model or create_player(
         config.model, tools=config.tool_calls, profile=config.profile, answered=len(said)
     )
-    if (folder / CASSETTE).is_dir():
-        live = Recorder(live, folder / CASSETTE, known=len(said))
+    if (folder / FOLDER).is_dir():
+        live = Recorder(live, folder / FOLDER, known=len(said))
     return Resumed(said, live)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from adamo.action_server.tools import INSPECT, SURVEY, Tool
 from adamo.cognition.profile import PAPER, Profile, StateText
 from adamo.cognition.trajectory import Trajectory, read_trajectory
 from adamo.inference.cassette import Cassette
-from adamo.inference.messages import AIMessage
-from adamo.inference.model import Model, ModelKind, Rung
+from adamo.inference.model import Model, ModelKind, Reply, Rung
 from adamo.inference.registry import create_model
+from adamo.inference.resumed import Resumed
 from adamo.inference.scripted import ScriptedModel
 
-CASSETTE = "cassette"
-"""Folder within a run folder that keeps the requests and replies of a recorded model."""
-_REPLAY, _CASSETTE = "replay:", "cassette:"
+_REPLAY = "replay:"
 
 
 def create_player(
@@ -24,8 +24,7 @@ def create_player(
     """The model of a URI.
 
     Args:
-        uri: As in `adamo.inference.registry.create_model`, or ``replay:RUN_DIR``, or
-            ``cassette:DIR`` with a run folder or the cassette in it.
+        uri: As in `adamo.inference.registry.create_model`, or ``replay:RUN_DIR``.
         tools: How a remote model is asked for calls: "auto", "native", "schema" or "react".
         profile: Decides whether a remote model may give several calls at once, and whether a
             cache of its prompt pays.
@@ -38,10 +37,7 @@ def create_player(
     """
     if uri.startswith(_REPLAY):
         folder = Path(uri.removeprefix(_REPLAY))
-        model: Model = recorded_model(read_trajectory(folder), uri)
-    elif uri.startswith(_CASSETTE):
-        folder = Path(uri.removeprefix(_CASSETTE))
-        model = Cassette(folder / CASSETTE if (folder / CASSETTE).is_dir() else folder)
+        model: Model = recorded_model(read_trajectory(folder), uri, answered)
     else:
         model = create_model(
             uri,
@@ -56,21 +52,23 @@ def create_player(
     return model
 
 
-def fitting(profile: Profile, model: Model) -> Profile:
-    """The profile that a model can follow: one that is asked for steps as text gives one a turn."""
+def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None) -> Profile:
+    """The profile that a model can follow, with the tools that it is given.
+
+    One that is asked for steps as text gives one a turn, and without the tools for close-ups there
+    are none.
+    """
     if getattr(model, "rung", None) in (Rung.SCHEMA, Rung.REACT):
-        return replace(profile, plan=1)
+        profile = replace(profile, plan=1)
+    if tools is not None and not {INSPECT, SURVEY} <= set(tools):
+        profile = replace(profile, closeups=False, min_confidence=0.0)
     return profile
 
 
-def close_player(model: Model) -> None:
-    """Close a model's connections, if it has any."""
-    close = getattr(model, "close", None)
-    if callable(close):
-        close()
-
-
-def recorded_model(trajectory: Trajectory, name: str) -> Model:
-    """A model that says again what was said in a recorded episode."""
-    said = [AIMessage(thought.note, thought.calls) for thought in trajectory.thoughts]
-    return ScriptedModel(name, said, kind=ModelKind.REPLAY)
+def recorded_model(trajectory: Trajectory, name: str, answered: int = 0) -> Model:
+    """A model that says again what was said in a recorded episode, what could not be read too."""
+    said = [
+        Reply(thought.reply.message, unreadable=thought.unreadable)
+        for thought in trajectory.thoughts[answered:]
+    ]
+    return Resumed(said, ScriptedModel(name, (), kind=ModelKind.REPLAY))

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
+from adamo.action_server import Tool
 from adamo.assemble.engines import create_engine, open_server
 from adamo.benchmark.episode import read_manifest
 from adamo.benchmark.replay import ReplayReport, replay
 from adamo.cognition.trajectory import read_trajectory
 
 
-def replay_episode(folder: str | Path, start: int = 0) -> ReplayReport:
+def replay_episode(
+    folder: str | Path, start: int = 0, *, tools: Sequence[Tool] | None = None
+) -> ReplayReport:
     """Execute a recorded episode again without its model and compare every state hash.
 
     Args:
         folder: A run folder.
         start: Begin after this many steps, from the state that was saved there.
+        tools: The body's primitives, as when it was recorded; those of the profile by default.
 
     Raises:
         RecordError: The folder holds no readable run, or has no such step.
@@ -23,8 +28,8 @@ def replay_episode(folder: str | Path, start: int = 0) -> ReplayReport:
     path = Path(folder)
     manifest, recorded = read_manifest(path), read_trajectory(path)
     engine = create_engine(manifest.config.scene, manifest.config.figure)
-    engine.reset(manifest.config.seed)
     try:
-        return replay(open_server(manifest.config, engine), recorded, start)
+        engine.reset(manifest.config.seed)
+        return replay(open_server(manifest.config, engine, tools), recorded, start)
     finally:
         engine.close()

@@ -16,7 +16,7 @@ from adamo.benchmark.tasks import task
 from adamo.cognition.budget import Budget
 from adamo.cognition.profile import PAPER, Profile
 from adamo.cognition.termination import Limits, TerminationReason
-from adamo.cognition.trajectory import Trajectory
+from adamo.cognition.trajectory import Thought, Trajectory
 from adamo.engine import WorldState, supporting_object
 from adamo.errors import ConfigError, RecordError
 from adamo.geometry import Vec3
@@ -124,7 +124,7 @@ class EpisodeResult:
     """Why it was stopped, in words, where there is more to say than the reason."""
     answer: str
     steps: int
-    """Turns with a tool call."""
+    """Tool calls that were executed or refused."""
     model_calls: int
     calls: Mapping[str, int]
     """Executed or refused tool calls by kind."""
@@ -217,7 +217,7 @@ def summarise(
         unreadable=sum(bool(t.unreadable) for t in trajectory.thoughts),
         requests=sum(t.requests for t in trajectory.thoughts),
         usage=sum((t.usage for t in trajectory.thoughts), Usage()),
-        cost_usd=_total([t.cost_usd for t in trajectory.thoughts]),
+        cost_usd=total_cost(trajectory.thoughts),
         rungs=tuple(sorted({str(t.rung) for t in trajectory.thoughts if t.rung is not None})),
         model_s=sum(t.model_s for t in trajectory.thoughts),
         world_s=sum(act.world_s for act in trajectory.acts),
@@ -229,10 +229,10 @@ def summarise(
     )
 
 
-def _total(costs: Sequence[float | None]) -> float | None:
-    """The sum; None if any is unknown, because an unknown price is not 0."""
-    known = [cost for cost in costs if cost is not None]
-    return sum(known) if known and len(known) == len(costs) else None
+def total_cost(thoughts: Sequence[Thought]) -> float | None:
+    """What all answers cost; None if any price is unknown, because that is not 0."""
+    known = [thought.cost_usd for thought in thoughts if thought.cost_usd is not None]
+    return sum(known) if known and len(known) == len(thoughts) else None
 
 
 def to_json(record: Manifest | EpisodeResult) -> Any:

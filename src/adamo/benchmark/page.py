@@ -18,7 +18,13 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from adamo.benchmark.episode import EpisodeResult, Manifest, read_manifest, read_result
+from adamo.benchmark.episode import (
+    EpisodeResult,
+    Manifest,
+    read_manifest,
+    read_result,
+    total_cost,
+)
 from adamo.benchmark.floor_plan import MARGIN_M, floor_plan
 from adamo.benchmark.timeline import turns
 from adamo.cognition.budget import Budget
@@ -52,7 +58,7 @@ _ENDINGS = {
     TerminationReason.LOOP: (
         "truncated",
         "Loop",
-        "Stopped: the same call led to the same state {limits.max_repeats} times.",
+        "Stopped: {limits.max_repeats} times the same call into the same state, or no call.",
     ),
     TerminationReason.BUDGET: (
         "truncated",
@@ -192,11 +198,9 @@ class _Account:
 
 
 def _account(thoughts: Sequence[Thought]) -> _Account:
-    costs = [thought.cost_usd for thought in thoughts]
-    known = [cost for cost in costs if cost is not None]
     return _Account(
         sum((thought.usage for thought in thoughts), Usage()),
-        sum(known) if known and len(known) == len(costs) else None,
+        total_cost(thoughts),
         any(is_estimated(thought.settings) for thought in thoughts),
         sum(thought.requests for thought in thoughts),
         tuple(sorted({thought.rung.value for thought in thoughts if thought.rung})),

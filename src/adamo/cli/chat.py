@@ -7,7 +7,7 @@ from typing import Any
 
 from rich.console import Console
 
-from adamo.assemble import ChatSession
+from adamo.assemble.chat import ChatSession
 from adamo.assemble.episode import chosen_profile, member
 from adamo.benchmark.episode import EpisodeConfig
 from adamo.cli.episode import new_run_folder
@@ -57,7 +57,8 @@ def talk(
         while said is not None:
             _answer(console, session.say(said))
             said = _ask(console)
-    console.print(f"Kept in {session.folder}; go on with: adamo chat --resume {session.folder}")
+    kept = f"Kept in {session.folder}; go on with: adamo chat --resume {session.folder}"
+    console.print(kept, markup=False, highlight=False, soft_wrap=True)
 
 
 def _ask(console: Console) -> str | None:
@@ -76,4 +77,6 @@ def _answer(console: Console, ended: Ended) -> None:
         console.print(ended.answer, markup=False, highlight=False, soft_wrap=True)
     else:
         why = f"; {ended.why}" if ended.why else ""
-        console.print(f"(stopped: {ended.reason}{why})", style="yellow", markup=False)
+        console.print(
+            f"(stopped: {ended.reason}{why})", style="yellow", markup=False, soft_wrap=True
+        )

@@ -18,7 +18,7 @@ from adamo.benchmark.episode import EpisodeResult, to_json
 from adamo.cli.progress import Progress
 from adamo.cognition.budget import Budget
 from adamo.cognition.forecast import Forecast
-from adamo.cognition.termination import Limits
+from adamo.cognition.termination import Limits, TerminationReason
 from adamo.cognition.trajectory import Observer
 from adamo.engine import Engine
 from adamo.errors import ConfigError
@@ -37,7 +37,7 @@ def run_and_show(
     **settings: Any,
 ) -> None:
     """Run an episode and print what happens, or one JSON object at the end."""
-    from adamo.assemble import run_episode
+    from adamo.assemble.episode import run_episode
 
     folder = out or new_run_folder(settings["task"] or instruction or "")
     with ExitStack() as stack:
@@ -88,7 +88,7 @@ def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> 
 
 def resume_and_show(folder: Path, *, as_json: bool) -> None:
     """Go on with an interrupted run."""
-    from adamo.assemble import resume_episode
+    from adamo.assemble.episode import resume_episode
 
     progress = () if as_json else (Progress(Console()),)
     _show(resume_episode(folder, observers=progress), folder, as_json=as_json)
@@ -105,7 +105,7 @@ def _show(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
 
 def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
     """Replay a run folder and say whether every state came out the same."""
-    from adamo.assemble import replay_episode
+    from adamo.assemble.replaying import replay_episode
 
     report = replay_episode(run_dir, start)
     same = not report.mismatches
@@ -207,7 +207,8 @@ def _print_result(console: Console, result: EpisodeResult, folder: Path) -> None
         console.print(value, markup=False, highlight=False, soft_wrap=True)
 
     console.print()
-    line("answer", result.answer or f"(none: {result.termination})")
+    broken = result.termination is TerminationReason.BROKEN
+    line("fault" if broken else "answer", result.answer or f"(none: {result.termination})")
     if result.completion is not None:
         met = sum(c.satisfied for c in result.conditions)
         line(

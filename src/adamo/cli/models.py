@@ -10,6 +10,7 @@ from datetime import datetime
 import typer
 from rich.console import Console
 
+from adamo.assemble.players import create_player
 from adamo.errors import ModelConfigError, ModelError
 from adamo.inference.capabilities import Capabilities, Support, ToolSupport, load_capabilities
 from adamo.inference.model import Rung
@@ -62,7 +63,7 @@ class _Line:
 
 def check(uri: str, *, refresh: bool, as_json: bool) -> None:
     """Say what a model can do and how it will be asked; exit 1 if it cannot be reached."""
-    local = create_local_model(uri)
+    local = create_player(uri) if uri.startswith("replay:") else create_local_model(uri)
     if local is not None:
         _show_local(uri, local.kind, as_json=as_json)
         return

@@ -8,6 +8,9 @@ from dataclasses import fields
 from adamo.cognition.budget import Budget
 from adamo.errors import ConfigError
 
+_WHOLE = ("tokens", "calls")
+"""Caps that are counts."""
+
 
 def pairs(given: Sequence[str] | None, option: str) -> dict[str, str]:
     """Read KEY=VALUE texts.
@@ -36,7 +39,8 @@ def read_budget(caps: dict[str, str]) -> Budget:
     values: dict[str, float | int] = {}
     for key, text in caps.items():
         try:
-            values[key] = int(text) if key in ("tokens", "calls") else float(text)
+            values[key] = int(text) if key in _WHOLE else float(text)
         except ValueError:
-            raise ConfigError(f"--budget {key}={text}: {text!r} is no number.") from None
+            whole = "whole " if key in _WHOLE else ""
+            raise ConfigError(f"--budget {key}={text}: {text!r} is no {whole}number.") from None
     return Budget(**values)  # type: ignore[arg-type]

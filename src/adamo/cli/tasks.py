@@ -48,7 +48,7 @@ def list_tasks(*, as_json: bool) -> None:
 
 def verify(scene: str | None, *, as_json: bool) -> None:
     """Play oracle and idle for every task, scene and labeling; exit 1 if a task is unsound."""
-    from adamo.assemble import create_engine
+    from adamo.assemble.engines import create_engine
     from adamo.benchmark.verify import verify_tasks
     from adamo.runtime.scenes import scene_names
 

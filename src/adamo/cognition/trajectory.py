@@ -358,5 +358,7 @@ def read_trajectory(folder: Path) -> Trajectory:
             events.append(_codec().validate_json(line))
         except ValidationError as error:
             problem = error.errors()[0]["msg"]
-            raise RecordError(f"{path}, line {number} is damaged: {problem}") from None
+            raise RecordError(
+                f"{path}, line {number} is damaged: {problem}; written by another version?"
+            ) from None
     return Trajectory(tuple(events))

@@ -25,8 +25,8 @@ _NOTE_FIELDS: dict[str, Any] = {
         "description": "How sure you are that this is the right step.",
     },
 }
-_IN_WORDS = ("description", "minimum", "maximum")
-"""Parts of a field's schema that the instructions tell as well."""
+_IN_WORDS = ("description", "minimum", "maximum", "maxLength")
+"""Parts of a field's schema that the instructions tell as well, or a refusal does."""
 
 
 @dataclass(frozen=True, slots=True)

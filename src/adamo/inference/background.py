@@ -14,6 +14,8 @@ from functools import cache
 from typing import Any, TypeVar
 
 T = TypeVar("T")
+_starting = threading.Lock()
+"""Threads that ask for the first time at once must get the same loop."""
 
 
 def run_in_background(work: Coroutine[Any, Any, T]) -> T:
@@ -21,7 +23,9 @@ def run_in_background(work: Coroutine[Any, Any, T]) -> T:
 
     An interrupt of the waiting thread cancels the work.
     """
-    future = asyncio.run_coroutine_threadsafe(work, _loop(os.getpid()))
+    with _starting:
+        loop = _loop(os.getpid())
+    future = asyncio.run_coroutine_threadsafe(work, loop)
     try:
         return future.result()
     except BaseException:

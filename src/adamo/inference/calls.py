@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Annotated, Any, Literal, assert_never
@@ -86,11 +86,6 @@ class Request:
     messages: tuple[Annotated[Kept, Field(discriminator="role")], ...]
     tools: tuple[ToolSchema, ...]
     sampling: Sampling
-
-    @property
-    def pictures(self) -> tuple[Picture, ...]:
-        """All pictures in their order."""
-        return tuple(picture for message in self.messages for picture in _pictures(message))
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,13 +198,6 @@ def _cleaned(value: Any, clean: Clean) -> Any:
 def _picture(part: ImagePart) -> Picture:
     digest = hashlib.sha256(part.data).hexdigest()
     return Picture(digest, part.media_type, part.width_px, part.height_px)
-
-
-def _pictures(message: Kept) -> Iterator[Picture]:
-    if isinstance(message, Human):
-        yield from (part for part in message.parts if isinstance(part, Picture))
-    elif isinstance(message, ToolResult):
-        yield from message.images
 
 
 def _shown(message: Kept) -> str:

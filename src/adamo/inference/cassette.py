@@ -23,8 +23,14 @@ from adamo.inference.messages import Message
 from adamo.inference.model import Model, ModelKind, Reply, Rung, Sampling, close_model
 
 LABEL, CALLS = "cassette.json", "calls.jsonl"
+FOLDER = "cassette"
+"""Folder of the cassette within a run folder."""
 _VERSION = 1
 _DIFF_LINES = 40
+_FIX = (
+    "Give the settings of the recording (profile, labeling, k, ...), undo the change, or record "
+    "it again."
+)
 
 
 class Recorder:
@@ -65,10 +71,16 @@ class Recorder:
         folder = self._path.parent
         recorded = _read_label(folder)
         if recorded != (self._model.name, self._model.kind):
-            raise RecordError(f"{folder} is a cassette of {recorded[0]}, not of {self.name}.")
+            raise RecordError(
+                f"{folder} is a cassette of {recorded[0]}, not of {self.name}; go on with that "
+                "model."
+            )
         lines = _whole_lines(self._path).splitlines(keepends=True)
         if len(lines) < count:
-            raise RecordError(f"{folder} holds {len(lines)} calls; {count} were answered.")
+            raise RecordError(
+                f"{folder} holds {len(lines)} calls, and {count} were answered. Delete it to go "
+                "on without a recording."
+            )
         half = self._path.with_suffix(".part")
         half.write_bytes(b"".join(lines[:count]))
         os.replace(half, self._path)
@@ -105,15 +117,17 @@ class Cassette:
     def __init__(self, folder: str | Path) -> None:
         """Read a cassette.
 
+        Args:
+            folder: The cassette, or a run folder with one in it.
+
         Raises:
             RecordError: It is missing, damaged or of another version.
         """
-        self._folder = Path(folder)
+        inner = Path(folder) / FOLDER
+        self._folder = inner if inner.is_dir() else Path(folder)
         self._model, self._kind = _read_label(self._folder)
         self._calls = _read_calls(self._folder)
         self._next = 0
-        self.pictures_differ = 0
-        """Pictures so far that had the recorded size but other bytes."""
 
     @property
     def name(self) -> str:
@@ -129,6 +143,11 @@ class Cassette:
     def kind(self) -> ModelKind:
         """Kind of the model that was recorded."""
         return self._kind
+
+    @property
+    def rung(self) -> Rung | None:
+        """How the recorded model was asked; None if it had no wire."""
+        return self._calls[0].reply.rung if self._calls else None
 
     def __len__(self) -> int:
         """How many calls it holds."""
@@ -159,8 +178,6 @@ class Cassette:
             plain = request_of(messages, tools, sampling, clean=encodable_text)
             if sections(plain) != sections(call.request):
                 raise CassetteError(f"{self.name}, {_difference(call, asked)}")
-        pairs = zip(call.request.pictures, asked.pictures, strict=True)
-        self.pictures_differ += sum(one.sha256 != other.sha256 for one, other in pairs)
         self._next += 1
         return call.reply
 
@@ -195,7 +212,7 @@ def _difference(call: Call, asked: Request) -> str:
     if len(lines) > _DIFF_LINES:
         left_out = len(lines) - _DIFF_LINES
         lines = [*lines[:_DIFF_LINES], f"... {left_out} more lines"]
-    head = f"call {call.number}: {what} ({counts}). Record it again, or undo the change."
+    head = f"call {call.number}: {what} ({counts}). {_FIX}"
     return "\n".join([head, *lines])
 
 
@@ -204,7 +221,9 @@ def _read_label(folder: Path) -> tuple[str, ModelKind]:
     try:
         label = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
-        raise RecordError(f"{folder} is no cassette: {LABEL} is missing.") from None
+        raise RecordError(
+            f"{folder} is no cassette: {LABEL} is missing. `adamo run --record` makes one."
+        ) from None
     except ValueError:
         raise RecordError(f"{path} is damaged: it is no JSON.") from None
     if not isinstance(label, dict) or label.get("version") != _VERSION:

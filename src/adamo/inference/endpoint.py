@@ -22,6 +22,10 @@ _KEYS = {
 """Environment variables of keys, the first that is set counts."""
 
 
+_ADDRESS = re.compile(r"@(?=(?://)?(?:localhost\b|[^@/\s]+:\d|\[))(?://)?(.+)$")
+"""An address without its scheme at the end of a model's name."""
+
+
 @dataclass(frozen=True, slots=True)
 class Endpoint:
     """A parsed model URI."""
@@ -55,13 +59,19 @@ def parse_endpoint(uri: str) -> Endpoint:
     """Read ``PROVIDER:NAME`` or ``PROVIDER:NAME@http://HOST:PORT/v1``.
 
     Raises:
-        ModelConfigError: The URI is malformed, or its address carries a secret.
+        ModelConfigError: The URI is malformed, or its address has no scheme or carries a secret.
     """
     prefix, _, rest = uri.partition(":")
     at = re.search(r"@(?=https?://)", rest)
     model, base_url = (rest[: at.start()], rest[at.end() :]) if at else (rest, None)
     if not prefix or not model:
         raise ModelConfigError("A remote model is written PROVIDER:NAME, e.g. openai:gpt-4o.")
+    if base_url is None and (lost := _ADDRESS.search(model)):
+        # Else the request would go to the provider, with the key.
+        raise ModelConfigError(
+            f"{uri}: write the address with its scheme, "
+            f"{prefix}:{model[: lost.start()]}@http://{lost[1]}."
+        )
     endpoint = Endpoint(prefix, model, base_url)
     if base_url is not None:
         _check_url(endpoint, base_url)
@@ -95,14 +105,15 @@ def check_remote_allowed(endpoint: Endpoint) -> None:
     if os.environ.get(NO_REMOTE, "0") in ("", "0"):
         return
     host = urlsplit(endpoint.base_url).hostname if endpoint.base_url else None
-    if host is None or not _is_loopback(host):
+    if host is None or not is_loopback(host):
         raise ModelConfigError(
             f"{endpoint.prefix}:{endpoint.model} is a remote model and {NO_REMOTE} forbids those. "
             f"Unset {NO_REMOTE}, or use baseline, a script or a server on 127.0.0.1."
         )
 
 
-def _is_loopback(host: str) -> bool:
+def is_loopback(host: str) -> bool:
+    """Whether a host name or address is this machine's own."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:

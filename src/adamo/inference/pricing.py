@@ -48,10 +48,6 @@ class Price:
     cached_usd: float
     """Of the part of the input that a provider cache served."""
     output_usd: float
-    source: str
-    """Where the price is from."""
-    rises: bool = False
-    """Long requests cost more than this."""
 
     def cost_usd(self, usage: Usage) -> float:
         """What a usage costs at this price."""
@@ -80,33 +76,6 @@ def cost_usd(uri: str, usage: Usage) -> float | None:
         return own.cost_usd(usage)
     listed = _listed(uri, usage)
     return None if listed is None else float(listed.total_price)
-
-
-def price_of(uri: str) -> Price | None:
-    """The price of a model; None if none is known.
-
-    Raises:
-        ConfigError: The user's price table is wrong.
-    """
-    own = _own_price(uri)
-    if own is not None:
-        return own
-    listed = _listed(uri, Usage())
-    if listed is None:
-        return None
-    from genai_prices import __version__
-
-    prices = listed.model_price
-    reads, rises = _base(prices.input_mtok)
-    writes, also = _base(prices.output_mtok)
-    cached, _ = _base(prices.cache_read_mtok)
-    return Price(
-        reads or 0.0,
-        (reads or 0.0) if cached is None else cached,
-        writes or 0.0,
-        f"genai-prices {__version__}, {listed.provider.id}/{listed.model.id}",
-        rises or also,
-    )
 
 
 def prices_file() -> Path:
@@ -163,7 +132,7 @@ def _read_entry(path: Path, uri: str, entry: Any) -> Price:
             raise ConfigError(f"{where}: {field} is missing; add it, {_EXAMPLE}.")
     numbers = {field: _number(f"{where}: {field}", value) for field, value in entry.items()}
     cached = numbers.get("cached", numbers["input"])
-    return Price(numbers["input"], cached, numbers["output"], str(path))
+    return Price(numbers["input"], cached, numbers["output"])
 
 
 def _number(where: str, value: Any) -> float:
@@ -212,11 +181,3 @@ def _is_complete(prices: ModelPrice, model: str) -> bool:
         return False
     priced = prices.input_mtok is not None and prices.output_mtok is not None
     return priced or model.endswith(":free")
-
-
-def _base(price: object) -> tuple[float | None, bool]:
-    """The price of short requests, and whether long ones cost more."""
-    if price is None:
-        return None, False
-    base = getattr(price, "base", None)
-    return (float(str(price)), False) if base is None else (float(base), True)

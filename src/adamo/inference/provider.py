@@ -228,7 +228,9 @@ class ProviderModel:
             return outcome
         if asking.sampling.exact and refused_setting(exchange, EXACT):
             return _inexact(failure.text)
-        return replace(failure, refused=self._settings.take_refusal(exchange, settings, asking.sampling))
+        return replace(
+            failure, refused=self._settings.take_refusal(exchange, settings, asking.sampling)
+        )
 
     def _read(self, response: ModelResponse, asking: _Asking) -> _Answer:
         names = {tool.name for tool in asking.parameters.function_tools}

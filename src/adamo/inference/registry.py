@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 KNOWN = (
     "baseline, baseline:ocr, random, random:SEED, scripted:FILE.json, replay:RUN_DIR, "
-    "cassette:DIR, openai:NAME, openai:NAME@http://HOST:PORT/v1 (any OpenAI-compatible server), openai-responses:NAME, "
-    "anthropic:NAME, google:NAME, or PROVIDER:NAME with another provider of pydantic-ai, "
-    "e.g. openrouter:NAME, ollama:NAME, mistral:NAME"
+    "cassette:RUN_DIR, openai:NAME, openai:NAME@http://HOST:PORT/v1 (any OpenAI-compatible "
+    "server), openai-responses:NAME, anthropic:NAME, google:NAME, or PROVIDER:NAME with another "
+    "provider of pydantic-ai, e.g. openrouter:NAME, ollama:NAME, mistral:NAME"
 )
 
 AUTO = "auto"
@@ -38,7 +38,8 @@ def create_model(
 
     Args:
         uri: ``baseline``, ``baseline:ocr``, ``random``, ``random:SEED``,
-            ``scripted:FILE.json``, ``cassette:DIR``, ``openai:NAME``, ``openai:NAME@URL`` or ``PROVIDER:NAME``.
+            ``scripted:FILE.json``, ``cassette:DIR``, ``openai:NAME``, ``openai:NAME@URL`` or
+            ``PROVIDER:NAME``.
         retry: Limits on trying a remote model again.
         tools: How a remote model is asked for its calls. "auto" takes the best way that works: it
             probes the model unless that was done before. "native", "schema" and "react" probe

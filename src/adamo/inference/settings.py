@@ -67,9 +67,7 @@ class Settings:
         """Whether system text may only come once, at the start."""
         return SEVERAL_SYSTEM in self._refused
 
-    def take_refusal(
-        self, exchange: Exchange, wanted: Collection[str], sampling: Sampling
-    ) -> str:
+    def take_refusal(self, exchange: Exchange, wanted: Collection[str], sampling: Sampling) -> str:
         """Remember what an answer refuses.
 
         Args:

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from adamo.inference.baseline import ledger
+from adamo.inference.baseline.classes import Beliefs, classify, likeliest
 from adamo.inference.baseline.closeups import closeup_sight
 from adamo.inference.baseline.goals import Description, Plan
-from adamo.inference.baseline.grounding import Beliefs, classify, degree, likeliest, thing_of
+from adamo.inference.baseline.grounding import degree, thing_of
 from adamo.inference.baseline.happenings import FAR_M, happened
 from adamo.inference.baseline.memory import Memory, Search, Slot, Thing
 from adamo.inference.baseline.prototypes import class_of
@@ -121,11 +122,16 @@ def look(prompt: Prompt, plan: Plan, memory: Memory, reader: WordReader | None) 
     if not pixels:
         return
     if prompt.fresh:
-        _see(prompt, plan, memory, sights(prompt, reader))
+        _see(prompt, plan, memory, sights(prompt, reader, _asks_for_outlines(plan)))
     events = prompt.turns[-1].events if prompt.turns else ()
     for event in events:
         if event.pictures and event.tag in memory.things:
             _see_closely(event, prompt, plan, memory, reader)
+
+
+def _asks_for_outlines(plan: Plan) -> bool:
+    """Whether it matters how round things are."""
+    return any("round" in description.shapes for _, description in slots(plan))
 
 
 def _compares(plan: Plan, memory: Memory) -> bool:
@@ -181,7 +187,7 @@ def _see_closely(
     sight = closeup_sight(event.pictures[-1], slimness, reader)
     if sight is None:
         return
-    far = sights(prompt).get(tag)
+    far = sights(prompt, None, _asks_for_outlines(plan)).get(tag)
     if far:
         sight = replace(sight, misfits=far.misfits, cut=far.cut, clear=far.clear)
     beliefs = classify(tag, volume, sight)

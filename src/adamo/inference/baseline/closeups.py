@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from adamo.inference.baseline.colours import shares, white_level
-from adamo.inference.baseline.drawn import Mask, Picture, PixelBox, clipped
+from adamo.inference.baseline.drawn import Mask, Picture, PixelBox, brightest, clipped
 from adamo.inference.baseline.print_marks import print_share
 from adamo.inference.baseline.sight import Sight
 from adamo.inference.baseline.vision import decoded, own_pixels, roundness
@@ -38,7 +38,7 @@ def closeup_sight(
         return None
     box = _middle(picture, slimness)
     drawn: Mask = np.zeros(picture.shape[:2], bool)
-    mask, clear = own_pixels(picture, drawn, box)
+    mask, clear = own_pixels(picture, brightest(picture), drawn, box)
     if not mask.any():
         return None
     area = clipped(box, picture)

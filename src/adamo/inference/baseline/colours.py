@@ -18,10 +18,12 @@ _HUES: tuple[tuple[int, str], ...] = (
     (181, "red"),
 )
 """Upper ends of the hues (0 to 180) of each name."""
-_NAMES = (*dict.fromkeys(name for _, name in _HUES), "brown", "black", "grey", "white")
-_CODE = {name: code for code, name in enumerate(_NAMES)}
+COLOURS = (*dict.fromkeys(name for _, name in _HUES), "brown", "black", "grey", "white")
+"""All names."""
+_CODE = {name: code for code, name in enumerate(COLOURS)}
 _CODE_OF_HUE = np.array(
-    [_CODE[next(name for end, name in _HUES if hue < end)] for hue in range(181)], np.int64
+    [_CODE[next(name for end, name in _HUES if min(hue, 180) < end)] for hue in range(256)],
+    np.uint8,
 )
 _BLACK_BELOW = 55
 _PALE = 42
@@ -73,8 +75,9 @@ def shares(
 
     if not mask.any():
         return {}
-    hsv = cv2.cvtColor(crop, cv2.COLOR_BGR2HSV)[mask]
-    hue, saturation, value = hsv[:, 0], hsv[:, 1], hsv[:, 2]
+    hue, saturation, value = (
+        np.asarray(channel)[mask] for channel in cv2.split(cv2.cvtColor(crop, cv2.COLOR_BGR2HSV))
+    )
     codes = _CODE_OF_HUE[hue]
     warm = (codes == _CODE["orange"]) | (codes == _CODE["yellow"])
     codes[warm & (value < _BROWN_BELOW)] = _CODE["brown"]
@@ -83,7 +86,9 @@ def shares(
     cream = (saturation < _CREAM) & (hue >= 10) & (hue < 40)
     codes[(pale | cream) & (value >= white_from)] = _CODE["white"]
     codes[(value < _BLACK_BELOW) | (pale & (value < _BLACK_BELOW + 15))] = _CODE["black"]
-    counts = np.bincount(codes, minlength=len(_NAMES))
+    counts = np.bincount(codes, minlength=len(COLOURS))
     return {
-        name: float(count) / len(codes) for name, count in zip(_NAMES, counts, strict=True) if count
+        name: float(count) / len(codes)
+        for name, count in zip(COLOURS, counts, strict=True)
+        if count
     }

@@ -38,6 +38,7 @@ def brightest(picture: Picture) -> NDArray[np.uint8]:
 
 def drawn_over(
     picture: Picture,
+    bright: NDArray[np.uint8],
     boxes: Sequence[PixelBox],
     points: Sequence[tuple[float, float, float]],
     camera: Camera | None,
@@ -46,6 +47,7 @@ def drawn_over(
 
     Args:
         picture: (H, W, 3) BGR frame.
+        bright: Its brightest channels, (H, W).
         boxes: Tight boxes of the objects, as the text lists them; lines run around them.
         points: Reference points in the world, metres.
         camera: Of the frame; without one, crosses are not found.
@@ -66,7 +68,7 @@ def drawn_over(
         ):
             drawn[clipped(line, drawn)] = True
     _mark_crosses(drawn, points, camera)
-    _mark_plates(drawn, picture, boxes)
+    _mark_plates(drawn, picture, bright, boxes)
     return drawn
 
 
@@ -82,7 +84,9 @@ def _mark_crosses(
             drawn[clipped(box, drawn)] = True
 
 
-def _mark_plates(drawn: Mask, picture: Picture, boxes: Sequence[PixelBox]) -> None:
+def _mark_plates(
+    drawn: Mask, picture: Picture, bright: NDArray[np.uint8], boxes: Sequence[PixelBox]
+) -> None:
     """Tags: dark rectangles of the height of a line of text, with bright letters in them."""
     import cv2
 
@@ -100,7 +104,7 @@ def _mark_plates(drawn: Mask, picture: Picture, boxes: Sequence[PixelBox]) -> No
         drawn,
     )
     crop = picture[area]
-    ink = cv2.compare(brightest(crop), INK_BELOW + 1, cv2.CMP_LT)
+    ink = (bright[area] <= INK_BELOW).view(np.uint8)
     fill = max(3, round(line_px / 8))
     solid = cv2.morphologyEx(ink, cv2.MORPH_CLOSE, np.ones((fill, 3 * fill), np.uint8))
     solid = cv2.morphologyEx(solid, cv2.MORPH_OPEN, np.ones((round(line_px / 2),) * 2, np.uint8))

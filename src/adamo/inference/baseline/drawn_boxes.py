@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo.geometry import Camera
-from adamo.inference.baseline.drawn import Picture, PixelBox, brightest
+from adamo.inference.baseline.drawn import PixelBox
 from adamo.inference.baseline.state_text import Listed
 
 Counts = NDArray[np.int32]
@@ -36,11 +36,13 @@ _COVERED_MIDDLE = 0.4
 _MOST_LINES = 16
 
 
-def with_boxes(picture: Picture, things: Sequence[Listed], camera: Camera) -> tuple[Listed, ...]:
+def with_boxes(
+    bright: NDArray[np.uint8], things: Sequence[Listed], camera: Camera
+) -> tuple[Listed, ...]:
     """Add the boxes that the text leaves out.
 
     Args:
-        picture: (H, W, 3) BGR frame.
+        bright: Brightest channel of each pixel of the frame, (H, W).
         things: What is listed as in view.
         camera: Of the frame.
 
@@ -57,10 +59,10 @@ def with_boxes(picture: Picture, things: Sequence[Listed], camera: Camera) -> tu
     reach = np.array([_reach(side) for side in sides])[:, None]
     low = np.floor((pixels[:, :2] - reach).min(axis=0)).clip(0).astype(int)
     high = np.ceil((pixels[:, :2] + reach).max(axis=0)).clip(0).astype(int) + 1
-    part = picture[low[1] : high[1], low[0] : high[0]]
+    part = bright[low[1] : high[1], low[0] : high[0]]
     if min(part.shape[:2]) < 8:
         return tuple(things)
-    width = _line_px(picture.shape[0])
+    width = _line_px(bright.shape[0])
     upright, level = _lines(part, width)
     found = []
     for thing, (u, v, depth), side in zip(things, pixels, sides, strict=True):
@@ -83,13 +85,12 @@ def _shifted(box: PixelBox, x: int, y: int) -> PixelBox:
     return left + x, top + y, right + x, bottom + y
 
 
-def _lines(picture: Picture, width: int) -> tuple[Counts, Counts]:
+def _lines(bright: NDArray[np.uint8], width: int) -> tuple[Counts, Counts]:
     """Where upright and level lines begin, as integral pictures."""
     import cv2
 
     # A line is never dark: its brightest channel stands out on any ground.
-    value = brightest(picture)
-    upright, level = (cv2.integral(_starts(value, width, axis)) for axis in (1, 0))
+    upright, level = (cv2.integral(_starts(bright, width, axis)) for axis in (1, 0))
     return np.asarray(upright, np.int32), np.asarray(level, np.int32)
 
 
@@ -106,10 +107,10 @@ def _starts(value: NDArray[np.uint8], width: int, axis: int) -> NDArray[np.uint8
     if width > 1:
         bright = np.asarray(cv2.min(bright, value[along(width, end + width - 1)]), np.uint8)
     rims = cv2.max(value[along(0, end - 1)], value[along(1 + width, end + width)])
-    stands_out = cv2.compare(cv2.subtract(bright, rims), _STEP, cv2.CMP_GT)
-    found = np.zeros(value.shape, np.uint8)
-    found[along(1, end)] = cv2.bitwise_and(stands_out, cv2.compare(rims, _RIM_BELOW, cv2.CMP_LT))
-    return np.asarray(cv2.min(found, 1), np.uint8)
+    found = np.zeros(value.shape, bool)
+    stands_out = np.asarray(cv2.subtract(bright, rims)) > _STEP
+    found[along(1, end)] = stands_out & (np.asarray(rims) < _RIM_BELOW)
+    return found.view(np.uint8)
 
 
 def _line_px(height_px: int) -> int:
@@ -158,9 +159,7 @@ def _box_around(
     return left + inside, top + inside, right - 1, bottom - 1
 
 
-def _covered(
-    sums: Counts, lines: Places, pairs: Places, spans: Places
-) -> tuple[Shares, Shares]:
+def _covered(sums: Counts, lines: Places, pairs: Places, spans: Places) -> tuple[Shares, Shares]:
     """Shares of the two lines of each pair that are covered within each span, (pairs, spans)."""
     first, last = spans[:, 0], spans[:, 1]
     shares = _column(sums, lines[:, None], first, last) / (last - first)
@@ -189,10 +188,8 @@ def _pairs(places: Places, middle: float, low: float, high: float) -> Places:
     """Pairs of lines that may be two sides of a box around a place."""
     if len(places) < 2:
         return np.zeros((0, 2), np.intp)
-    first, second = np.meshgrid(places, places, indexing="ij")
-    pairs = np.stack([first.ravel(), second.ravel()], axis=1)
-    span = pairs[:, 1] - pairs[:, 0]
-    off = np.abs(pairs.mean(axis=1) - middle)
-    return np.asarray(
-        pairs[(span >= low) & (span <= high) & (off <= _OFF_CENTRE * span + 2)], np.intp
-    )
+    first, second = places[:, None], places[None, :]
+    span = second - first
+    off = np.abs((first + second) / 2 - middle)
+    i, j = np.nonzero((span >= low) & (span <= high) & (off <= _OFF_CENTRE * span + 2))
+    return np.asarray(np.stack([places[i], places[j]], axis=1), np.intp)

@@ -3,90 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 from adamo.geometry import Vec3
+from adamo.inference.baseline.classes import Beliefs, classify, likeliest
 from adamo.inference.baseline.goals import Description, Relation
 from adamo.inference.baseline.memory import Thing
 from adamo.inference.baseline.prototypes import Prototype, class_of, prototypes, size_of
 from adamo.inference.baseline.sight import Sight
-from adamo.inference.baseline.words import named_kinds
-
-Beliefs = Mapping[str, float]
-"""Probability of each class for one thing."""
 
 _NEAR_SOURCE_M = 0.6
 _FLOOR_BOTTOM_M = 0.1
-_VIVID = {"grey": 0.0, "white": 0.0, "black": 0.5, "brown": 0.5}
-"""How much a colour speaks against glass; all others fully."""
-_SHADING = 0.1
-"""Share of grey or black that says nothing."""
-_READABLE_PX = 600
-"""Pixels from which missing print means something."""
-_PRINT_WEIGHT = 0.7
-_WORD_WEIGHT = 5.0
 _A_WORD = 3
 """Letters from which what was read is a word."""
-
-
-def classify(tag: str, volume_cm3: float, sight: Sight | None) -> Beliefs:
-    """What a thing may be.
-
-    A semantic tag names the class. Behind an opaque tag, each prototype is weighed by the volume
-    (as the text tells), by the extents in the picture and by the colours.
-    """
-    if named := class_of(tag):
-        return {named: 1.0}
-    weights = {
-        name: math.exp(-_misfit(prototype, volume_cm3, sight))
-        for name, prototype in prototypes().items()
-    }
-    total = sum(weights.values()) or 1.0
-    return {name: weight / total for name, weight in weights.items()}
-
-
-def _misfit(prototype: Prototype, volume_cm3: float, sight: Sight | None) -> float:
-    """Negative log likelihood, up to a constant."""
-    off = math.log(max(volume_cm3, 0.1) / prototype.volume_cm3) / prototype.spread
-    misfit = off * off / 2
-    if sight is None or sight.pixels < 30:
-        return misfit
-    if not sight.cut:
-        misfit += sight.misfits.get(prototype.name, 0.0)
-    looks = _colour_misfit(prototype, sight) + _print_misfit(prototype, sight)
-    return misfit + looks + _word_misfit(prototype, sight)
-
-
-def _colour_misfit(prototype: Prototype, sight: Sight) -> float:
-    """How unusual the colours are for the class."""
-    if prototype.transparent:
-        vivid = sum(_VIVID.get(colour, 1.0) * share for colour, share in sight.colours.items())
-        return (1 - sight.clear) * (1.5 + 3.0 * vivid)
-    usual = dict(prototype.colours)
-    usual["white"] = max(usual.get("white", 0.0), prototype.white)
-    odd = sum(
-        # Shadows and highlights are on everything.
-        max(0.0, share - (_SHADING if colour in ("grey", "black") else 0.0))
-        * (1 - usual.get(colour, 0.0))
-        for colour, share in sight.colours.items()
-    )
-    return 2.5 * odd + 1.5 * sight.clear
-
-
-def _word_misfit(prototype: Prototype, sight: Sight) -> float:
-    """A name that can be read on a thing says what it is, if such things carry their names."""
-    named = named_kinds(sight.words).get(prototype.name, 0.0)
-    return -_WORD_WEIGHT * named * min(1.0, 2 * prototype.label)
-
-
-def _print_misfit(prototype: Prototype, sight: Sight) -> float:
-    """Printed rows speak for what usually carries a label, and a large plain face against it."""
-    if sight.pixels < _READABLE_PX:
-        return 0.0
-    printed = math.tanh(sight.text / 0.08)
-    expected = 0.1 + 0.8 * prototype.label
-    return -_PRINT_WEIGHT * math.log(printed * expected + (1 - printed) * (1 - expected * 0.7))
 
 
 def degree(
@@ -220,11 +150,6 @@ def _from_there(
         if other.tag != thing.tag and class_of(other.tag) in classes
     ]
     return 1.0 if near and min(near) < _NEAR_SOURCE_M else 0.1
-
-
-def likeliest(beliefs: Beliefs) -> str:
-    """What a thing most probably is."""
-    return max(beliefs, key=lambda name: beliefs[name])
 
 
 def thing_of(tag: str, position: Vec3, volume_cm3: float, kind: str = "") -> Thing:

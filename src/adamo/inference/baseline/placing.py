@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from adamo.geometry import Vec3
+from adamo.geometry import Array, Vec3
 from adamo.inference.baseline.goals import Goal, Relation
 from adamo.inference.baseline.memory import Job, Memory, Thing
 from adamo.inference.baseline.reading import Prompt, Room
@@ -76,22 +76,38 @@ def floor_spot(prompt: Prompt, memory: Memory, thing: Thing, near: Vec3 | None, 
     raised = [t.position for t in others if t.bottom_z >= _LEVEL_M]
     raised += [p for p in prompt.points if 0.1 < p.z < 1.2 and _inside(room, p, 0.15)]
     lying = [t for t in others if t.bottom_z < _LEVEL_M]
+    high, low = _flat(raised), _flat([t.position for t in lying])
+    radii_m = np.array([_radius(t) for t in lying])
     middle = near or body
     radii = (0.3, 0.45, 0.6, 0.75) if near else (0.55, 0.65, 0.75, 0.85)
-    scored = []
-    for radius in radii:
-        for angle in np.arange(0.0, 2 * math.pi, math.pi / 12):
-            spot = _around(middle, radius, angle, 0.0)
-            if not _inside(room, spot, 0.25 + thing.width_m / 2):
-                continue
-            free = min((_between(spot, t) - _radius(thing) for t in lying), default=9.0)
-            clear = min((spot.horizontal_distance(p) for p in raised), default=9.0)
-            # A hand's breadth between things; far enough from furniture, then close to hand.
-            score = 4 * min(free, 0.08) + min(clear, 0.7) - 0.1 * radius
-            scored.append((score, spot))
-    if not scored:
+    around = [
+        (radius, _around(middle, radius, turn_rad, 0.0))
+        for radius in radii
+        for turn_rad in np.arange(0.0, 2 * math.pi, math.pi / 12)
+    ]
+    spots = [(r, s) for r, s in around if _inside(room, s, 0.25 + thing.width_m / 2)]
+    if not spots:
         return room.clamp(Vec3(body.x, body.y, 0.0), 0.5)
+    flat = _flat([spot for _, spot in spots])
+    free = (_apart(flat, low) - radii_m).min(axis=1, initial=9.0) - _radius(thing)
+    clear = _apart(flat, high).min(axis=1, initial=9.0)
+    # A hand's breadth between things; far enough from furniture, then close to hand.
+    scores = (
+        4 * np.minimum(free, 0.08) + np.minimum(clear, 0.7) - 0.1 * np.array([r for r, _ in spots])
+    )
+    scored = [(float(score), spot) for score, (_, spot) in zip(scores, spots, strict=True)]
     return _pick_apart(scored, turn, 0.4)
+
+
+def _flat(points: Sequence[Vec3]) -> Array:
+    """Where points are on the floor plan, (N, 2)."""
+    return np.array([(p.x, p.y) for p in points]).reshape(-1, 2)
+
+
+def _apart(spots: Array, places: Array) -> Array:
+    """Distances from each spot to each place on the floor plan, (spots, places)."""
+    off = spots[:, None] - places
+    return np.asarray(np.hypot(off[..., 0], off[..., 1]))
 
 
 def corner_spot(prompt: Prompt, memory: Memory, thing: Thing, turn: int) -> Vec3:

@@ -29,8 +29,8 @@ def print_share(crop: NDArray[np.uint8], mask: NDArray[np.bool_]) -> float:
     kernel = cv2.getStructuringElement(cv2.MORPH_RECT, (7, 1))
     dark = cv2.morphologyEx(grey, cv2.MORPH_BLACKHAT, kernel)
     bright = cv2.morphologyEx(grey, cv2.MORPH_TOPHAT, kernel)
-    strong = cv2.compare(cv2.max(dark, bright), _CONTRAST, cv2.CMP_GT)
-    strokes = cv2.bitwise_and(strong, strong, mask=inner)
+    strong = np.asarray(cv2.max(dark, bright)) > _CONTRAST
+    strokes = (strong & np.asarray(inner, bool)).view(np.uint8)
     # Letters stand side by side: closing sideways joins them to words, single edges stay thin.
     words = cv2.morphologyEx(strokes, cv2.MORPH_CLOSE, np.ones((1, 9), np.uint8))
     words = cv2.morphologyEx(words, cv2.MORPH_OPEN, np.ones((2, 9), np.uint8))

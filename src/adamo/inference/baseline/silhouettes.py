@@ -56,11 +56,11 @@ def misfits(things: Sequence[Listed], camera: Camera) -> Mapping[str, Mapping[st
     seen = np.array([[(max(x1 - x0, 1), max(y1 - y0, 1))] for _, (x0, y0, x1, y1) in known], float)
     off = np.log(seen / np.maximum(spans, 1.0)) / _SPREAD
     best = np.minimum.reduceat((off**2).sum(axis=2) / 2, outlines.first_turns, axis=1)
-    told = (pixels[..., 2] >= _NEAREST_M / 2).all(axis=1)
+    nearest = pixels[..., 2].min(axis=1)
     return {
         thing.tag: dict(zip(prototypes(), row.tolist(), strict=True))
-        for (thing, _), row, is_told in zip(known, np.minimum(best, _MOST), told, strict=True)
-        if is_told
+        for (thing, _), row, depth in zip(known, np.minimum(best, _MOST), nearest, strict=True)
+        if depth >= _NEAREST_M / 2
     }
 
 

@@ -46,12 +46,15 @@ _ENOUGH_PIXELS = 15000
 _READING_MARGIN_PX = 8
 
 
-def sights(prompt: Prompt, reader: WordReader | None = None) -> Mapping[str, Sight]:
+def sights(
+    prompt: Prompt, reader: WordReader | None = None, outlines: bool = True
+) -> Mapping[str, Sight]:
     """Look at every listed thing that has a box.
 
     Args:
         prompt: Its latest frame must be the one that the list describes.
         reader: Reads printed words on what seems to carry any; None to do without.
+        outlines: Whether to measure how round things are.
 
     Returns:
         Measurements by tag; empty without a frame or without boxes.
@@ -59,7 +62,7 @@ def sights(prompt: Prompt, reader: WordReader | None = None) -> Mapping[str, Sig
     things = boxed(prompt)
     if prompt.frame is None or not any(thing.box_px for thing in things):
         return {}
-    found = _looked_at(prompt.frame.data, things, prompt.points_key, camera_of(prompt))
+    found = _looked_at(prompt.frame.data, things, prompt.points_key, camera_of(prompt), outlines)
     if reader is None:
         return found
     picture = decoded(prompt.frame.data)
@@ -84,7 +87,14 @@ def boxed(prompt: Prompt) -> tuple[Listed, ...]:
 @lru_cache(maxsize=8)
 def _boxed(data: bytes, things: tuple[Listed, ...], camera: Camera) -> tuple[Listed, ...]:
     picture = decoded(data)
-    return things if picture is None else with_boxes(picture, things, camera)
+    return things if picture is None else with_boxes(_bright(data), things, camera)
+
+
+@lru_cache(maxsize=2)
+def _bright(data: bytes) -> NDArray[np.uint8]:
+    picture = decoded(data)
+    assert picture is not None
+    return brightest(picture)
 
 
 @lru_cache(maxsize=2)
@@ -112,37 +122,50 @@ def _looked_at(
     things: tuple[Listed, ...],
     points: tuple[tuple[float, float, float], ...],
     camera: Camera | None,
+    outlines: bool,
 ) -> Mapping[str, Sight]:
     picture = decoded(data)
     if picture is None:
         return {}
+    bright = _bright(data)
     boxes = [thing.box_px for thing in things if thing.box_px]
-    drawn = drawn_over(picture, boxes, points, camera)
+    drawn = drawn_over(picture, bright, boxes, points, camera)
     visible = [thing for thing in things if thing.box_px]
-    masks = {t.tag: _solid(picture, drawn, t, things) for t in visible}
+    masks = {t.tag: _solid(picture, bright, drawn, t, things) for t in visible}
     white = _white(picture, masks, visible)
     sizes = misfits(visible, camera) if camera else {}
     return {
-        t.tag: _look_at(picture, masks[t.tag], t, white, sizes.get(t.tag, {})) for t in visible
+        t.tag: _look_at(picture, masks[t.tag], t, white, sizes.get(t.tag, {}), outlines)
+        for t in visible
     }
 
 
 def _solid(
-    picture: Picture, drawn: Mask, thing: Listed, things: tuple[Listed, ...]
+    picture: Picture,
+    bright: NDArray[np.uint8],
+    drawn: Mask,
+    thing: Listed,
+    things: tuple[Listed, ...],
 ) -> tuple[Mask, float]:
     """The pixels of a box that show its object, and how much looks like what is behind."""
     assert thing.box_px is not None
     area = clipped(thing.box_px, drawn)
-    return own_pixels(picture, drawn, thing.box_px, _own_part(thing, things, drawn[area].shape))
+    own = _own_part(thing, things, drawn[area].shape)
+    return own_pixels(picture, bright, drawn, thing.box_px, own)
 
 
 def own_pixels(
-    picture: Picture, drawn: Mask, box: PixelBox, part: Mask | None = None
+    picture: Picture,
+    bright: NDArray[np.uint8],
+    drawn: Mask,
+    box: PixelBox,
+    part: Mask | None = None,
 ) -> tuple[Mask, float]:
     """The pixels of a box that differ from what surrounds it.
 
     Args:
         picture: (H, W, 3) BGR.
+        bright: Its brightest channels, (H, W).
         drawn: (H, W), where lines and tags hide the picture.
         box: Around the object.
         part: Which part of the box may show it; all of it by default.
@@ -154,7 +177,7 @@ def own_pixels(
     own = ~drawn[area] if part is None else part & ~drawn[area]
     if not own.any():
         return own, 0.0
-    solid = own & ~_behind(picture, drawn, box)
+    solid = own & ~_behind(picture, bright, drawn, box)
     size, left = np.count_nonzero(own), np.count_nonzero(solid)
     return (solid if left >= _LEAST_PIXELS else own), (size - left) / size
 
@@ -174,6 +197,7 @@ def _look_at(
     thing: Listed,
     white_from: float,
     sizes: Mapping[str, float],
+    outlines: bool,
 ) -> Sight:
     assert thing.box_px is not None
     left, top, right, bottom = thing.box_px
@@ -189,7 +213,7 @@ def _look_at(
         pixels=int(np.count_nonzero(solid)),
         colours=shares(np.ascontiguousarray(crop[::step, ::step]), coarse, white_from),
         text=print_share(crop, solid),
-        roundness=roundness(coarse),
+        roundness=roundness(coarse) if outlines else 0.0,
         clear=clear,
         misfits=sizes,
         cut=left <= 1 or top <= 1 or right >= width - 1 or bottom >= height - 1,
@@ -200,17 +224,19 @@ def _own_part(thing: Listed, things: tuple[Listed, ...], shape: tuple[int, ...])
     """The part of a box where no nearer thing can be in front."""
     own = np.ones(shape[:2], bool)
     assert thing.box_px is not None
-    left, top, _, bottom = thing.box_px
+    left, top, right, bottom = thing.box_px
     for other in things:
         # On one surface, what reaches lower in the picture stands nearer.
         if other is thing or not other.box_px or other.box_px[3] <= bottom:
             continue
         x0, y0, x1, y1 = other.box_px
+        if x0 >= right or x1 <= left or y0 >= bottom or y1 <= top:
+            continue
         own[clipped((x0 - left, y0 - top, x1 - left, y1 - top), own)] = False
     return own if np.count_nonzero(own) > 0.15 * own.size else np.ones(shape[:2], bool)
 
 
-def _behind(picture: Picture, drawn: Mask, box: PixelBox) -> Mask:
+def _behind(picture: Picture, bright: NDArray[np.uint8], drawn: Mask, box: PixelBox) -> Mask:
     """Pixels of a box that have the colours of the frame around it."""
     import cv2
 
@@ -223,17 +249,26 @@ def _behind(picture: Picture, drawn: Mask, box: PixelBox) -> Mask:
     )
     codes = _codes(picture[outer])
     # Tags are no background, nor is anything ink.
-    usable = ~drawn[outer] & (brightest(picture[outer]) > INK_BELOW)
+    usable = ~drawn[outer] & (bright[outer] > INK_BELOW)
     usable[rows, columns] = False
     around = codes[usable]
     inside = codes[rows, columns]
     if len(around) < 30:
         return np.zeros(inside.shape, bool)
     counts = np.bincount(around, minlength=_BINS**3).reshape((_BINS,) * 3)
-    for axis in range(3):  # JPEG and shading move colours to neighbouring bins
-        counts = counts + np.roll(counts, 1, axis) + np.roll(counts, -1, axis)
-    likely = (counts.ravel() > 0.02 * len(around)).astype(np.uint8)
+    likely = (_blurred(counts) > 0.02 * len(around)).astype(np.uint8)
     return np.asarray(cv2.medianBlur(likely[inside], 3), bool)
+
+
+def _blurred(counts: NDArray[np.int64]) -> NDArray[np.float32]:
+    """Each bin with all its neighbours: JPEG and shading move colours to them. Flat."""
+    import cv2
+
+    none = cv2.BORDER_CONSTANT
+    wide = cv2.boxFilter(counts.astype(np.float32), -1, (3, 3), normalize=False, borderType=none)
+    rows = np.asarray(wide, np.float32).reshape(-1, _BINS)
+    wide = cv2.boxFilter(rows, -1, (3, 1), normalize=False, borderType=none)
+    return np.asarray(wide, np.float32).ravel()
 
 
 def _codes(pixels: Picture) -> NDArray[np.int16]:

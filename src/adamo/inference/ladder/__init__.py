@@ -100,11 +100,6 @@ class Ladder:
         return self._inner.kind
 
     @property
-    def inner(self) -> Provider:
-        """The model on its wire."""
-        return self._inner
-
-    @property
     def rung(self) -> Rung:
         """How the model is asked."""
         return self._rung

@@ -82,14 +82,14 @@ def _read(value: Mapping[str, Any], tools: Sequence[ToolSchema]) -> Step | Unrea
         action = action.get("name")
     if not isinstance(action, str) or not action.strip():
         return Unreadable('its JSON object has no "action" with the name of a tool.')
-    args = holder.get("args", holder.get("arguments"))
+    name, args = encodable_text(action).strip(), holder.get("args", holder.get("arguments"))
     if isinstance(args, dict):
         args = dump_arguments(args)
     readable = read_arguments(args or "") if isinstance(args, str | None) else None
     if readable is None:
-        return Unreadable(f'the "args" of {action.strip()[:60]} are no JSON object.')
+        return Unreadable(f'the "args" of {name[:60]} are no JSON object.')
     said = encodable_text(thought).strip() if isinstance(thought, str) else ""
-    return action_step(said, encodable_text(action).strip(), readable, tools)
+    return action_step(said, name, readable, tools)
 
 
 def _action(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
