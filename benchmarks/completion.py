@@ -1,9 +1,10 @@
 """Completion of a model on every task: one episode for each task, scene, labeling and profile.
 
     python benchmarks/completion.py [--model baseline] [--scene s1] [--labeling sem]
-        [--profile paper] [--task T4] [--budget-usd 5] [--seed 0] [--json]
+        [--profile paper] [--task T4] [--budget-usd 5] [--seed 0] [--resolution 1920x1080] [--json]
 
-Options may be repeated. Tokens are the provider's, or estimated for players that have none.
+Scene, labeling, profile and task may be repeated. Tokens are the provider's, or estimated for
+players that have none.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from typing import Any
 import adamo
 from adamo.assemble.players import create_player, fitting
 from adamo.benchmark.tasks import TASKS
+from adamo.cli.episode import parse_resolution
 from adamo.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo.cognition.profile import PROFILES
 from adamo.inference.model import close_model
@@ -32,6 +34,7 @@ def main() -> None:
     parser.add_argument("--profile", action="append")
     parser.add_argument("--task", action="append")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--resolution", type=parse_resolution, default=(1920, 1080))
     parser.add_argument("--budget-usd", type=float, help="cap on the whole run")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
@@ -55,6 +58,7 @@ def main() -> None:
                 profile=chosen,
                 model=Metered(player),
                 seed=arguments.seed,
+                resolution=arguments.resolution,
                 guards=[BudgetGuard(Budget(), ledger, caps)],
                 engine=engine,
             )

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -228,7 +229,8 @@ def test_a_cassette_is_served_and_refuses_another_prompt(
             ProviderModel(served.uri, QUICK).complete(prompt, TOOLS, Sampling())
 
 
-def test_the_command_serves_until_it_is_stopped(tmp_path: Path) -> None:
+@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
+def test_the_command_serves_until_it_is_stopped(tmp_path: Path, stop: signal.Signals) -> None:
     command = [sys.executable, "-u", "-m", "adamo", "serve-model", "baseline", "--port", "0"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=tmp_path) as process:
         assert process.stdout is not None
@@ -236,8 +238,11 @@ def test_the_command_serves_until_it_is_stopped(tmp_path: Path) -> None:
         asked = {"model": "m", "messages": [{"role": "user", "content": "x"}]}
         answer = httpx.post(f"{address}/chat/completions", json=asked)
         assert answer.status_code == 200
-        os.kill(process.pid, signal.SIGINT)
+        os.kill(process.pid, stop)
+        patience = threading.Timer(60, process.kill)
+        patience.start()
         rest = process.stdout.read()
+        patience.cancel()
     assert process.returncode == 0
     assert "200  text" in rest
     assert rest.endswith("stopped\n")

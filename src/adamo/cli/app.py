@@ -21,6 +21,30 @@ models_app = typer.Typer(help="The models.", no_args_is_help=True)
 app.add_typer(models_app, name="models")
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]
+Figure = Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")]
+Labeling = Annotated[str, typer.Option(help="sem or opaq.")]
+Model = Annotated[
+    str,
+    typer.Option(
+        help="baseline, random, scripted:FILE.json, replay:RUN_DIR, cassette:RUN_DIR, "
+        "openai:NAME, openai:NAME@URL, anthropic:NAME, google:NAME, ..."
+    ),
+]
+ToolCalls = Annotated[
+    str, typer.Option(help="How a remote model gives its calls: auto, native, schema or react.")
+]
+Profile = Annotated[str, typer.Option(help="How it is spoken to: paper, paper-exact or lean.")]
+Switch = Annotated[
+    list[str] | None,
+    typer.Option(help="One switch of the profile, e.g. plan=1; may be repeated."),
+]
+Record = Annotated[
+    bool, typer.Option("--record", help="Keep every request and reply as a cassette.")
+]
+RunFolder = Annotated[
+    Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
+]
 
 
 @app.command()
@@ -29,27 +53,13 @@ def run(
         str | None, typer.Argument(help="What the agent is told.", show_default=False)
     ] = None,
     task: Annotated[str | None, typer.Option(help="A benchmark task instead: T1 to T15.")] = None,
-    scene: Annotated[str, typer.Option(help="Built-in scene or scene file.")] = "s1",
-    figure: Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")] = "mara",
-    labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
-    model: Annotated[
-        str,
-        typer.Option(
-            help="baseline, random, scripted:FILE.json, replay:RUN_DIR, cassette:RUN_DIR, "
-            "openai:NAME, openai:NAME@URL, anthropic:NAME, google:NAME, ..."
-        ),
-    ] = "baseline",
-    tool_calls: Annotated[
-        str,
-        typer.Option(help="How a remote model gives its calls: auto, native, schema or react."),
-    ] = "auto",
-    profile: Annotated[
-        str, typer.Option(help="How it is spoken to: paper, paper-exact or lean.")
-    ] = "paper",
-    switch: Annotated[
-        list[str] | None,
-        typer.Option(help="One switch of the profile, e.g. plan=1; may be repeated."),
-    ] = None,
+    scene: Scene = "s1",
+    figure: Figure = "mara",
+    labeling: Labeling = "sem",
+    model: Model = "baseline",
+    tool_calls: ToolCalls = "auto",
+    profile: Profile = "paper",
+    switch: Switch = None,
     seed: Annotated[int, typer.Option(help="Seed of the episode.")] = 0,
     k: Annotated[int, typer.Option(help="Steps in the short-term memory.")] = 50,
     grid: Annotated[int, typer.Option(help="Reference points along a side.")] = 6,
@@ -62,12 +72,8 @@ def run(
             help="A cap: tokens=50000, usd=0.5, calls=20 or seconds=300; may be repeated."
         ),
     ] = None,
-    record: Annotated[
-        bool, typer.Option("--record", help="Keep every request and reply as a cassette.")
-    ] = False,
-    out: Annotated[
-        Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
-    ] = None,
+    record: Record = False,
+    out: RunFolder = None,
     resume: Annotated[
         Path | None, typer.Option(help="Go on with an interrupted run; takes no other setting.")
     ] = None,
@@ -109,28 +115,22 @@ def run(
 
 @app.command()
 def chat(
-    scene: Annotated[str, typer.Option(help="Built-in scene or scene file.")] = "s1",
-    figure: Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")] = "mara",
-    labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
-    model: Annotated[str, typer.Option(help="As in `adamo run`.")] = "baseline",
-    profile: Annotated[str, typer.Option(help="paper, paper-exact or lean.")] = "lean",
-    switch: Annotated[
-        list[str] | None,
-        typer.Option(help="One switch of the profile, e.g. plan=1; may be repeated."),
-    ] = None,
+    scene: Scene = "s1",
+    figure: Figure = "mara",
+    labeling: Labeling = "sem",
+    model: Model = "baseline",
+    tool_calls: ToolCalls = "auto",
+    profile: Profile = "lean",
+    switch: Switch = None,
     budget: Annotated[
         list[str] | None,
         typer.Option(help="A cap on the whole conversation, e.g. usd=0.5; may be repeated."),
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
-    ] = None,
+    out: RunFolder = None,
     resume: Annotated[
         Path | None, typer.Option(help="Go on with a recorded conversation or episode.")
     ] = None,
-    record: Annotated[
-        bool, typer.Option("--record", help="Keep every request and reply as a cassette.")
-    ] = False,
+    record: Record = False,
 ) -> None:
     """Talk with the agent: one instruction after another, in the same world, remembered."""
     from adamo.cli.chat import talk
@@ -144,6 +144,7 @@ def chat(
         figure=figure,
         labeling=labeling,
         model=model,
+        tool_calls=tool_calls,
         profile=profile,
         switches=pairs(switch, "switch"),
         budget=read_budget(pairs(budget, "budget")),

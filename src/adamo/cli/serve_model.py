@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,14 +21,16 @@ def serve(model: str, host: str, port: int, faults: Path | None, *, tools: bool)
     Raises:
         ConfigError: A setting is wrong or the port is taken.
     """
+    stop = threading.Event()
+    # Set anew because a shell may have told its background jobs to ignore Ctrl+C.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
     with serve_model(model, port, host=host, tools=tools, faults=faults, watch=_tell) as served:
         typer.echo(f"{served.name} at {served.base_url}")
         typer.echo(f"try    adamo run --task T1 --model {served.uri}")
         typer.echo("stop   Ctrl+C")
-        try:
-            threading.Event().wait()
-        except KeyboardInterrupt:
-            typer.echo("stopped")
+        stop.wait()
+    typer.echo("stopped")
 
 
 def _tell(served: Served) -> None:
