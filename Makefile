@@ -31,7 +31,7 @@ test: $(VENV)/.dev $(VENV)/.gl ## Run the tests, without the slow ones
 	@$(BIN)/pytest -n $(WORKERS) -m "not slow" $(PYTEST_FLAGS)
 
 test-all: $(VENV)/.dev $(VENV)/.gl ## Run all tests
-	@$(BIN)/pytest -n $(WORKERS) $(PYTEST_FLAGS)
+	@ADAMO_EXPLORE=1 $(BIN)/pytest -n $(WORKERS) $(PYTEST_FLAGS)
 
 check: $(VENV)/.dev ## Formatting, lint, types and layers, as CI does
 	@failed=; for gate in "ruff format --check ." "ruff check ." "mypy" "lint-imports --no-logo"; do \
