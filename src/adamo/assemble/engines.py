@@ -39,6 +39,14 @@ def tools_of(profile: Profile) -> Sequence[Tool]:
     return LEAN_TOOLS if profile.closeups else PAPER_TOOLS
 
 
+def instructions(config: EpisodeConfig, engine: Engine, server: LocalActionServer) -> str:
+    """The system prompt of an episode: what its scene, labeling, tools and profile call for."""
+    from adamo.benchmark.conditions import NEAR_M
+    from adamo.cognition.instructions import system_prompt
+
+    return system_prompt(engine.scene, config.labeling, server.actions, NEAR_M, config.profile)
+
+
 def open_server(
     config: EpisodeConfig, engine: Engine, tools: Sequence[Tool] | None = None
 ) -> LocalActionServer:

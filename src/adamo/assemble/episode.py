@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from adamo.action_server import Tool
-from adamo.assemble.engines import create_engine, open_server
+from adamo.assemble.engines import create_engine, instructions, open_server
 from adamo.assemble.forecasting import forecast_episodes
 from adamo.assemble.players import create_player, fitting
-from adamo.benchmark.conditions import NEAR_M
 from adamo.benchmark.episode import (
     MANIFEST,
     RESULT,
@@ -32,7 +31,6 @@ from adamo.cognition.agent import Agent, AgentConfig
 from adamo.cognition.budget import Budget, BudgetGuard
 from adamo.cognition.forecast import Forecast
 from adamo.cognition.guards import AsRecorded, Guard
-from adamo.cognition.instructions import system_prompt
 from adamo.cognition.profile import Profile
 from adamo.cognition.profile import profile as find_profile
 from adamo.cognition.termination import Limits
@@ -196,12 +194,11 @@ def create_agent(
 ) -> Agent:
     """The agent of an episode, on an engine that was just reset; what is known comes again."""
     server = open_server(config, engine, tools)
-    profile = config.profile
     return Agent(
         model,
         server,
-        system_prompt(engine.scene, config.labeling, server.actions, NEAR_M, profile),
-        AgentConfig(profile, config.k, config.text_form, config.sampling, config.limits),
+        instructions(config, engine, server),
+        AgentConfig(config.profile, config.k, config.text_form, config.sampling, config.limits),
         guards=(AsRecorded(known, (BudgetGuard(config.budget), *guards)),),
         observers=observers,
     )

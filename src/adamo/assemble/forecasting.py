@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from adamo.assemble.engines import open_server
-from adamo.benchmark.conditions import NEAR_M
+from adamo.assemble.engines import instructions, open_server
 from adamo.benchmark.episode import EpisodeConfig
 from adamo.benchmark.tasks import task as find_task
 from adamo.cognition.forecast import Forecast, forecast
-from adamo.cognition.instructions import system_prompt
 from adamo.cognition.memory import ShortTermMemory
 from adamo.cognition.turns import offered
 from adamo.engine import Engine
@@ -15,7 +13,7 @@ from adamo.inference.tokens import estimate_image, estimate_request, rule_for
 
 USUAL_CALLS = 4.67
 """Model calls an episode: GPT-4o on S1 in the paper."""
-_WORDS_PER_CALL = 150
+_TOKENS_PER_CALL = 150
 """What a call adds to the prompt: its note, its arguments, its feedback, and what changed."""
 _LOOKS_PER_CALL = 0.25
 """Share of the calls that bring another picture into the prompt."""
@@ -39,8 +37,8 @@ def forecast_episodes(config: EpisodeConfig, engine: Engine, episodes: int = 1) 
     """
     profile, rule = config.profile, rule_for(config.model)
     server = open_server(config, engine)
-    instructions = system_prompt(engine.scene, config.labeling, server.actions, NEAR_M, profile)
-    memory = ShortTermMemory(instructions, config.k, profile, config.text_form)
+    words = instructions(config, engine, server)
+    memory = ShortTermMemory(words, config.k, profile, config.text_form)
     memory.instruct(config.instruction, server.observe())
     first = estimate_request(memory.messages(), offered(server.actions, profile), rule)
     # A profile that keeps only the last pictures does not add any.
@@ -53,7 +51,7 @@ def forecast_episodes(config: EpisodeConfig, engine: Engine, episodes: int = 1) 
         config.model,
         calls_expected=calls,
         first_request_tokens=first,
-        growth_per_call_tokens=round(_WORDS_PER_CALL + picture),
+        growth_per_call_tokens=round(_TOKENS_PER_CALL + picture),
         output_per_call=_OUTPUT_PER_CALL,
         episodes=episodes,
     )

@@ -16,8 +16,6 @@ from adamo.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo.cognition.trajectory import Ended
 from adamo.perception import Labeling
 
-_HELP = "Say what to do; an empty line, /quit or Ctrl-D ends the conversation."
-
 
 def talk(
     *,

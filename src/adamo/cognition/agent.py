@@ -193,7 +193,7 @@ class Agent:
         for frame in result.pictures:
             self._tell(shown(self._steps, frame), frame)
         if result.observation is not None:
-            self._perceived(result.observation)
+            self._perceived(result.observation, result.state_hash)
         return result
 
     def _result(self, wish: Wish, text: str) -> Result:
@@ -218,10 +218,10 @@ class Agent:
         return replace(message, calls=message.calls[:done]), *told
 
     def _observe(self) -> Observation:
-        return self._perceived(self._server.observe())
+        return self._perceived(self._server.observe(), self._server.state_hash())
 
-    def _perceived(self, view: Observation) -> Observation:
-        self._seen_state = self._server.state_hash()
+    def _perceived(self, view: Observation, state_hash: str) -> Observation:
+        self._seen_state = state_hash
         self._tell(observed(self._steps, view), view.frame)
         return view
 

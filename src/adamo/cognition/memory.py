@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from adamo.action import Outcome
-from adamo.cognition.profile import Profile, StateText
+from adamo.cognition.profile import PAPER, Profile, StateText
 from adamo.cognition.prompts import render
 from adamo.cognition.view_text import Told, Wording, view_now, whole_state
 from adamo.errors import ConfigError
@@ -92,7 +92,7 @@ class ShortTermMemory:
         if k < 1:
             raise ConfigError(f"k is {k}; the memory keeps at least 1 step.")
         self._instructions = instructions
-        self._profile = profile or Profile()
+        self._profile = profile or PAPER
         self._wording = Wording(form, self._profile.terse)
         self._pinned: list[Instruction] = []
         self._k = k

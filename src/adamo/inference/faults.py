@@ -13,7 +13,6 @@ from adamo.inference.retry import Failure
 
 _RETRYABLE_STATUS = frozenset({408, 409, 425, 429})
 _LONGEST_TEXT = 500
-_OK = 200
 
 _FIXES = {
     401: "Check the API key in the environment.",
