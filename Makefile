@@ -23,7 +23,7 @@ help: ## Show this list
 
 demo: $(VENV)/.package $(VENV)/.gl ## Watch the built-in baseline carry out an instruction
 	@rm -rf $(DEMO)
-	@$(BIN)/adamo run "Pick the glass then place it next to the plate" \
+	@$(BIN)/adamo-vh run "Pick the glass then place it next to the plate" \
 		--scene s1 --model baseline --out $(DEMO)
 	@find $(CURDIR)/$(DEMO) -name '*.html' -exec printf '\nOpen in a browser: %s\n' {} +
 
@@ -31,7 +31,7 @@ test: $(VENV)/.dev $(VENV)/.gl ## Run the tests, without the slow ones
 	@$(BIN)/pytest -n $(WORKERS) -m "not slow" $(PYTEST_FLAGS)
 
 test-all: $(VENV)/.dev $(VENV)/.gl ## Run all tests
-	@ADAMO_EXPLORE=1 $(BIN)/pytest -n $(WORKERS) $(PYTEST_FLAGS)
+	@ADAMO_VH_EXPLORE=1 $(BIN)/pytest -n $(WORKERS) $(PYTEST_FLAGS)
 
 check: $(VENV)/.dev ## Formatting, lint, types and layers, as CI does
 	@failed=; for gate in "ruff format --check ." "ruff check ." "mypy" "lint-imports --no-logo"; do \

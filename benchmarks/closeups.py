@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from adamo.runtime.assets import catalog
-from adamo.runtime.assets.asset import Asset
-from adamo.runtime.assets.mujoco_parts import add_asset
+from adamo_vh.runtime.assets import catalog
+from adamo_vh.runtime.assets.asset import Asset
+from adamo_vh.runtime.assets.mujoco_parts import add_asset
 
 if TYPE_CHECKING:
     import mujoco

@@ -15,14 +15,14 @@ import json
 import statistics
 from typing import Any
 
-import adamo
-from adamo.assemble.players import create_player, fitting
-from adamo.benchmark.tasks import TASKS
-from adamo.cli.episode import parse_resolution
-from adamo.cognition.budget import Budget, BudgetGuard, Ledger
-from adamo.cognition.profile import PROFILES
-from adamo.inference.model import close_model
-from adamo.inference.tokens import Metered
+import adamo_vh
+from adamo_vh.assemble.players import create_player, fitting
+from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.cli.episode import parse_resolution
+from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.inference.model import close_model
+from adamo_vh.inference.tokens import Metered
 
 
 def main() -> None:
@@ -41,7 +41,7 @@ def main() -> None:
     ledger, caps = Ledger(), Budget(usd=arguments.budget_usd)
     rows: list[dict[str, Any]] = []
     for scene in arguments.scene or ["s1"]:
-        engine = adamo.create_engine(scene)
+        engine = adamo_vh.create_engine(scene)
         cells = itertools.product(
             arguments.profile or ["paper"],
             arguments.labeling or ["sem", "opaq"],
@@ -51,7 +51,7 @@ def main() -> None:
             # What may be asked of a model depends on the profile.
             player = create_player(arguments.model, profile=PROFILES[profile])
             chosen = fitting(PROFILES[profile], player)
-            result = adamo.run_episode(
+            result = adamo_vh.run_episode(
                 task=task,
                 scene=scene,
                 labeling=labeling,

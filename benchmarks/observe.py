@@ -19,11 +19,11 @@ import sys
 import time
 from collections.abc import Callable
 
-from adamo.perception import PerceptionConfig, perceive
-from adamo.perception.reference_points import reference_points
-from adamo.perception.visibility import visible_objects
-from adamo.runtime.builtin import BuiltinEngine
-from adamo.runtime.rendering import SceneRenderer
+from adamo_vh.perception import PerceptionConfig, perceive
+from adamo_vh.perception.reference_points import reference_points
+from adamo_vh.perception.visibility import visible_objects
+from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.runtime.rendering import SceneRenderer
 
 WIDTH, HEIGHT = 1920, 1080
 
@@ -91,8 +91,8 @@ def measure(scene: str, repeats: int) -> dict[str, float]:
     engine.close()
     bare = process_s(["-c", "pass"])
     figures["python_s"] = bare
-    figures["import_s"] = process_s(["-c", "import adamo"]) - bare
-    figures["help_s"] = process_s(["-m", "adamo", "--help"])
+    figures["import_s"] = process_s(["-c", "import adamo_vh"]) - bare
+    figures["help_s"] = process_s(["-m", "adamo_vh", "--help"])
     return figures
 
 

@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from adamo.runtime.human.looks import LIDS_CLOSED_RAD, VARIANTS, load_figure
-from adamo.runtime.human.skeleton import INDEX, REST, Pose, joint_frames
-from adamo.runtime.human.skin_mujoco import add_human, pose_human
+from adamo_vh.runtime.human.looks import LIDS_CLOSED_RAD, VARIANTS, load_figure
+from adamo_vh.runtime.human.skeleton import INDEX, REST, Pose, joint_frames
+from adamo_vh.runtime.human.skin_mujoco import add_human, pose_human
 
 if TYPE_CHECKING:
     import mujoco
     from numpy.typing import NDArray
 
-    from adamo.geometry import Array
+    from adamo_vh.geometry import Array
 
 WIDTH, HEIGHT = 720, 960
 Bend = Mapping[str, tuple[float, float, float]]

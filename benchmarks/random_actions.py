@@ -19,11 +19,11 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
-from adamo.action import parse
-from adamo.action_server import LocalActionServer, execute_call
-from adamo.errors import InvalidActionError
-from adamo.runtime.builtin import BuiltinEngine
-from adamo.runtime.soundness import Soundness, step_faults, view_faults
+from adamo_vh.action import parse
+from adamo_vh.action_server import LocalActionServer, execute_call
+from adamo_vh.errors import InvalidActionError
+from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.runtime.soundness import Soundness, step_faults, view_faults
 
 EPISODE_ACTIONS = 50
 RESOLUTION = (320, 180)

@@ -19,12 +19,12 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-import adamo
-from adamo.action import ToolSchema
-from adamo.assemble.players import create_player
-from adamo.benchmark.tasks import TASKS
-from adamo.inference.messages import HumanMessage, ImagePart, Message, ToolMessage
-from adamo.inference.model import Model, ModelKind, Reply, Sampling
+import adamo_vh
+from adamo_vh.action import ToolSchema
+from adamo_vh.assemble.players import create_player
+from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.inference.messages import HumanMessage, ImagePart, Message, ToolMessage
+from adamo_vh.inference.model import Model, ModelKind, Reply, Sampling
 
 Asked = tuple[tuple[Message, ...], tuple[ToolSchema, ...], Sampling]
 
@@ -75,14 +75,14 @@ def main() -> None:
     cells: dict[tuple[str, str, str], Times] = {}
     marks = itertools.count(1)
     for scene in arguments.scene or ["s1", "s2"]:
-        engine = adamo.create_engine(scene)
+        engine = adamo_vh.create_engine(scene)
         for labeling, profile, task in itertools.product(
             arguments.labeling or ["sem", "opaq"],
             arguments.profile or ["paper", "lean"],
             arguments.task or [item.id for item in TASKS],
         ):
             listening = Listening(player)
-            adamo.run_episode(
+            adamo_vh.run_episode(
                 task=task,
                 scene=scene,
                 labeling=labeling,

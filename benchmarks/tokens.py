@@ -22,17 +22,17 @@ from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any
 
-import adamo
-from adamo.action import Action, Pick, ToolSchema, action_name, arguments_of
-from adamo.action_server import LocalActionServer
-from adamo.benchmark.oracle import Oracle
-from adamo.benchmark.tasks import TASKS, Task
-from adamo.cognition.profile import PROFILES, Profile, profile
-from adamo.cognition.turns import CONFIDENCE, FINISH, NOTE
-from adamo.engine import Engine
-from adamo.inference.messages import AIMessage, Message, ToolCall, ToolMessage
-from adamo.inference.model import ModelKind, Reply, Sampling, Usage
-from adamo.inference.tokens import (
+import adamo_vh
+from adamo_vh.action import Action, Pick, ToolSchema, action_name, arguments_of
+from adamo_vh.action_server import LocalActionServer
+from adamo_vh.benchmark.oracle import Oracle
+from adamo_vh.benchmark.tasks import TASKS, Task
+from adamo_vh.cognition.profile import PROFILES, Profile, profile
+from adamo_vh.cognition.turns import CONFIDENCE, FINISH, NOTE
+from adamo_vh.engine import Engine
+from adamo_vh.inference.messages import AIMessage, Message, ToolCall, ToolMessage
+from adamo_vh.inference.model import ModelKind, Reply, Sampling, Usage
+from adamo_vh.inference.tokens import (
     ANTHROPIC,
     GEMINI,
     OPENAI_TILES,
@@ -42,7 +42,7 @@ from adamo.inference.tokens import (
     estimate_request,
     estimate_tools,
 )
-from adamo.perception import PerceptionConfig
+from adamo_vh.perception import PerceptionConfig
 
 PAPER_TOKENS, PAPER_CALLS = 32_978, 4.67
 RULES: dict[str, ImageRule] = {
@@ -169,7 +169,7 @@ def measure(
     for task, actions in plans.items():
         player = OraclePlayer(actions, chosen, rule, by_object)
         results.append(
-            adamo.run_episode(
+            adamo_vh.run_episode(
                 task=task, scene=engine.scene.name, model=player, profile=chosen, engine=engine
             )
         )
@@ -193,7 +193,7 @@ def main() -> None:
     parser.add_argument("--profiles-only", action="store_true", help="leave single switches out")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
-    engine = adamo.create_engine(arguments.scene)
+    engine = adamo_vh.create_engine(arguments.scene)
     tasks = [task for task in TASKS if not arguments.task or task.id in arguments.task]
     plans = {task.id: oracle_actions(engine, task) for task in tasks}
     chosen = [PROFILES["paper"], PROFILES["lean"]]

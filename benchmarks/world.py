@@ -23,16 +23,16 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from adamo.action_server import LocalActionServer
-from adamo.geometry import Vec3
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.action_server import LocalActionServer
+from adamo_vh.geometry import Vec3
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 FIRST_FRAME = """
 import time
 started = time.perf_counter()
-import adamo
-from adamo.action_server import LocalActionServer
-engine = adamo.create_engine({scene!r})
+import adamo_vh
+from adamo_vh.action_server import LocalActionServer
+engine = adamo_vh.create_engine({scene!r})
 engine.reset(0)
 LocalActionServer(engine).observe()
 print(time.perf_counter() - started)

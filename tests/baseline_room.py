@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from adamo.action import Drop, Look, Pick, ToolSchema, Walk, tool_schema
-from adamo.geometry import Vec3, wrap_angle
-from adamo.inference.baseline import BaselineModel
-from adamo.inference.messages import (
+from adamo_vh.action import Drop, Look, Pick, ToolSchema, Walk, tool_schema
+from adamo_vh.geometry import Vec3, wrap_angle
+from adamo_vh.inference.baseline import BaselineModel
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     Message,
@@ -17,7 +17,7 @@ from adamo.inference.messages import (
     TextPart,
     ToolMessage,
 )
-from adamo.inference.model import Sampling
+from adamo_vh.inference.model import Sampling
 
 TOOLS: list[ToolSchema] = [tool_schema(action) for action in (Look, Walk, Pick, Drop)]
 _NOTE = {"note": {"type": "string"}, "confidence": {"type": "number"}}

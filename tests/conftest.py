@@ -11,21 +11,21 @@ import pytest
 from hypothesis import settings
 
 if TYPE_CHECKING:
-    from adamo.runtime.builtin import BuiltinEngine
+    from adamo_vh.runtime.builtin import BuiltinEngine
 
 # Set before anything imports MuJoCo, and inherited by the subprocesses that tests start.
-os.environ["ADAMO_NO_REMOTE"] = "1"
+os.environ["ADAMO_VH_NO_REMOTE"] = "1"
 # One thread for each worker's software OpenGL: workers share few cores.
 os.environ.setdefault("LP_NUM_THREADS", "1")
 # Baked assets are built atomically, so all workers and all runs share one cache.
 os.environ.setdefault(
-    "ADAMO_CACHE_DIR", str(Path(__file__).resolve().parents[1] / ".cache" / "adamo-tests")
+    "ADAMO_VH_CACHE_DIR", str(Path(__file__).resolve().parents[1] / ".cache" / "adamo-tests")
 )
 
 # How long an example takes says nothing on a machine that is shared. The examples are the same in
 # every run, so that a red gate is the change's own fault; `make test-all` looks for new ones.
 settings.register_profile(
-    "adamo", parent=settings(), deadline=None, derandomize="ADAMO_EXPLORE" not in os.environ
+    "adamo", parent=settings(), deadline=None, derandomize="ADAMO_VH_EXPLORE" not in os.environ
 )
 settings.load_profile("adamo")
 
@@ -33,7 +33,7 @@ settings.load_profile("adamo")
 @pytest.fixture(scope="session")
 def s1_engine() -> Iterator[BuiltinEngine]:
     """One engine of scene S1 for all tests of a worker; use it through `engine`."""
-    from adamo.runtime.builtin import BuiltinEngine
+    from adamo_vh.runtime.builtin import BuiltinEngine
 
     made = BuiltinEngine("s1")
     yield made

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo.geometry import Array, Box, Camera, Vec3
-from adamo.observation import NOTHING, BodyState, Percept, SeenObject
+from adamo_vh.geometry import Array, Box, Camera, Vec3
+from adamo_vh.observation import NOTHING, BodyState, Percept, SeenObject
 
 EYES = Vec3(-2.0, -1.0, 1.6)
 GAZE = Vec3(0.51, -1.25, 0.8)

@@ -12,8 +12,8 @@ from typing import Any
 from PIL import Image
 from tests.tabletop import carried_out, tabletop
 
-from adamo.action import Code, Drop, Feedback, Look, Outcome, Pick, Walk
-from adamo.benchmark.episode import (
+from adamo_vh.action import Code, Drop, Feedback, Look, Outcome, Pick, Walk
+from adamo_vh.benchmark.episode import (
     MANIFEST,
     RESULT,
     EpisodeConfig,
@@ -21,9 +21,9 @@ from adamo.benchmark.episode import (
     summarise,
     write_record,
 )
-from adamo.benchmark.tasks import task
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import (
+from adamo_vh.benchmark.tasks import task
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import (
     Acted,
     Ended,
     LeftOut,
@@ -33,11 +33,11 @@ from adamo.cognition.trajectory import (
     observed,
     read_trajectory,
 )
-from adamo.engine import WorldState
-from adamo.geometry import Camera, Vec3
-from adamo.inference.messages import ToolCall
-from adamo.inference.model import ModelKind, Usage
-from adamo.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
+from adamo_vh.engine import WorldState
+from adamo_vh.geometry import Camera, Vec3
+from adamo_vh.inference.messages import ToolCall
+from adamo_vh.inference.model import ModelKind, Usage
+from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
 
 Painter = Callable[[WorldState, Camera, Sequence[ObservedObject]], Image.Image]
 
@@ -64,7 +64,7 @@ class Recorder:
             self.config,
             self.config.model,
             ModelKind.RULE_BASED,
-            {"adamo": "0.1.0"},
+            {"adamo-vh": "0.1.0"},
             "2026-01-01T00:00:00+00:00",
             self.world,
         )

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from adamo.action import Drop, Look, Pick, Walk
-from adamo.engine import FLOOR, Area, ObjectState, SceneInfo, WorldState
-from adamo.geometry import Box, Quaternion, Vec3
-from adamo.observation import BodyState
+from adamo_vh.action import Drop, Look, Pick, Walk
+from adamo_vh.engine import FLOOR, Area, ObjectState, SceneInfo, WorldState
+from adamo_vh.geometry import Box, Quaternion, Vec3
+from adamo_vh.observation import BodyState
 
 TABLE = "table"
 TABLE_TOP_M = 0.78

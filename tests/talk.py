@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from tests.dialects import DIALECTS, Dialect, Said, uri
 from tests.fake_provider import Answers, FakeProvider, Json
 
-from adamo.action import Drop, Look, Pick, ToolSchema, Walk, tool_schema
-from adamo.inference.messages import (
+from adamo_vh.action import Drop, Look, Pick, ToolSchema, Walk, tool_schema
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -18,9 +18,9 @@ from adamo.inference.messages import (
     TextPart,
     ToolCall,
 )
-from adamo.inference.model import Reply, Sampling
-from adamo.inference.provider import ProviderModel
-from adamo.inference.retry import RetryPolicy
+from adamo_vh.inference.model import Reply, Sampling
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.retry import RetryPolicy
 
 TOOLS = [tool_schema(action) for action in (Look, Walk, Pick, Drop)]
 FIRST = ImagePart(b"\xff\xd8\xff\xe0 first frame", "image/jpeg", 1920, 1080)

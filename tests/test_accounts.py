@@ -7,18 +7,18 @@ from pathlib import Path
 import pytest
 from tests.fake_provider import FakeProvider, call, completion
 
-import adamo
-from adamo.assemble.forecasting import forecast_episodes
-from adamo.benchmark.episode import EpisodeConfig, read_manifest, read_result
-from adamo.cognition.budget import Budget, BudgetGuard, Ledger
-from adamo.cognition.forecast import Forecast
-from adamo.cognition.profile import PROFILES
-from adamo.cognition.termination import TerminationReason
-from adamo.errors import CassetteError, ConfigError
-from adamo.inference.provider import ProviderModel
-from adamo.inference.registry import create_model
-from adamo.inference.tokens import OPENAI_TILES, Metered, estimate_image
-from adamo.runtime.builtin import BuiltinEngine
+import adamo_vh
+from adamo_vh.assemble.forecasting import forecast_episodes
+from adamo_vh.benchmark.episode import EpisodeConfig, read_manifest, read_result
+from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo_vh.cognition.forecast import Forecast
+from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.errors import CassetteError, ConfigError
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.registry import create_model
+from adamo_vh.inference.tokens import OPENAI_TILES, Metered, estimate_image
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 SMALL = (640, 360)
 PRICED = '["openai:tiny-vlm@*"]\ninput = 2.5\ncached = 1.25\noutput = 10.0\n'
@@ -34,13 +34,13 @@ def looks(count: int = 50):
 def prices(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     path = tmp_path / "prices.toml"
     path.write_text(PRICED)
-    monkeypatch.setenv("ADAMO_PRICES", str(path))
+    monkeypatch.setenv("ADAMO_VH_PRICES", str(path))
     return path
 
 
 def run(engine: BuiltinEngine, budget: Budget, guards=()):
     with FakeProvider(looks()) as server:
-        result = adamo.run_episode(
+        result = adamo_vh.run_episode(
             task="T1",
             model=ProviderModel(server.uri()),
             engine=engine,
@@ -96,7 +96,7 @@ def test_the_budget_of_a_run_is_shared_by_its_episodes(engine: BuiltinEngine) ->
 def test_a_forecast_comes_before_the_first_request(engine: BuiltinEngine, prices: Path) -> None:
     heard: list[tuple[Forecast, int]] = []
     with FakeProvider([completion("I cannot.")]) as server:
-        adamo.run_episode(
+        adamo_vh.run_episode(
             task="T4",
             model=ProviderModel(server.uri()),
             engine=engine,
@@ -107,7 +107,7 @@ def test_a_forecast_comes_before_the_first_request(engine: BuiltinEngine, prices
     assert sent == 0
     assert ahead.calls == 3
     assert ahead.usd is not None
-    adamo.run_episode(
+    adamo_vh.run_episode(
         task="T1", engine=engine, resolution=SMALL, announce=lambda _: heard.append((ahead, 0))
     )
     assert len(heard) == 1  # the baseline costs nothing
@@ -118,7 +118,7 @@ def test_a_forecast_is_near_to_what_is_used(engine: BuiltinEngine) -> None:
     uri = "openai:gpt-4o"
     config = EpisodeConfig("x", task="T8", model=uri, resolution=SMALL)
     ahead = forecast_episodes(config, engine)
-    result = adamo.run_episode(
+    result = adamo_vh.run_episode(
         task="T8", model=Metered(create_model("baseline")), engine=engine, resolution=SMALL
     )
     each = result.usage.input_tokens / result.model_calls
@@ -130,7 +130,7 @@ def test_lean_takes_fewer_tokens_for_the_same_task(engine: BuiltinEngine) -> Non
     spent = {}
     for name in ("paper", "lean"):
         model = Metered(create_model("baseline"))
-        result = adamo.run_episode(task="T8", model=model, engine=engine, profile=name)
+        result = adamo_vh.run_episode(task="T8", model=model, engine=engine, profile=name)
         assert result.completion == 1.0
         spent[name] = result.usage.input_tokens
     assert spent["lean"] < spent["paper"]
@@ -141,7 +141,7 @@ def test_lean_takes_fewer_tokens_for_the_same_task(engine: BuiltinEngine) -> Non
 def test_a_cassette_plays_the_episode_again(
     engine: BuiltinEngine, tmp_path: Path, profile: str
 ) -> None:
-    first = adamo.run_episode(
+    first = adamo_vh.run_episode(
         task="T4",
         engine=engine,
         resolution=SMALL,
@@ -149,7 +149,7 @@ def test_a_cassette_plays_the_episode_again(
         out=tmp_path / "run",
         record=True,
     )
-    again = adamo.run_episode(
+    again = adamo_vh.run_episode(
         task="T4",
         model=f"cassette:{tmp_path / 'run'}",
         engine=engine,
@@ -158,7 +158,7 @@ def test_a_cassette_plays_the_episode_again(
     )
     assert again.state_hash == first.state_hash
     assert again.completion == first.completion == 1.0
-    other = adamo.run_episode(
+    other = adamo_vh.run_episode(
         task="T2",
         model=f"cassette:{tmp_path / 'run'}",
         engine=engine,
@@ -172,23 +172,23 @@ def test_a_cassette_plays_the_episode_again(
 
 def test_a_resumed_recording_has_every_call_once(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    whole = adamo.run_episode(task="T4", resolution=SMALL, out=folder, record=True)
+    whole = adamo_vh.run_episode(task="T4", resolution=SMALL, out=folder, record=True)
     events = (folder / "events.jsonl").read_bytes().splitlines(keepends=True)
     (folder / "events.jsonl").write_bytes(b"".join(events[:4]))
     (folder / "result.json").unlink()
-    resumed = adamo.resume_episode(folder)
+    resumed = adamo_vh.resume_episode(folder)
     assert resumed.state_hash == whole.state_hash
-    again = adamo.run_episode(task="T4", model=f"cassette:{folder}", resolution=SMALL)
+    again = adamo_vh.run_episode(task="T4", model=f"cassette:{folder}", resolution=SMALL)
     assert again.state_hash == whole.state_hash
 
 
 def test_a_recording_needs_a_folder() -> None:
     with pytest.raises(ConfigError, match="needs a run folder"):
-        adamo.run_episode(task="T1", record=True)
+        adamo_vh.run_episode(task="T1", record=True)
 
 
 def test_the_profile_is_on_record(engine: BuiltinEngine, tmp_path: Path) -> None:
-    adamo.run_episode(
+    adamo_vh.run_episode(
         task="T1",
         engine=engine,
         resolution=SMALL,

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.action import (
+from adamo_vh.action import (
     Code,
     Drop,
     Feedback,
@@ -20,7 +20,7 @@ from adamo.action import (
     parse,
     tool_schema,
 )
-from adamo.errors import InvalidActionError
+from adamo_vh.errors import InvalidActionError
 
 ACTIONS = (Look, Walk, Pick, Drop)
 json_values = st.recursive(

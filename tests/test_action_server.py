@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import pytest
 
-from adamo.action import Code, Drop, Feedback, Look, Outcome, Pick, Walk, tool_schema
-from adamo.action_server import PAPER_TOOLS, LocalActionServer, Tool, ToolContext
-from adamo.action_server.feedback import picked
-from adamo.engine import BodyReport
-from adamo.geometry import Vec3
-from adamo.perception import Labeling, PerceptionConfig
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.action import Code, Drop, Feedback, Look, Outcome, Pick, Walk, tool_schema
+from adamo_vh.action_server import PAPER_TOOLS, LocalActionServer, Tool, ToolContext
+from adamo_vh.action_server.feedback import picked
+from adamo_vh.engine import BodyReport
+from adamo_vh.geometry import Vec3
+from adamo_vh.perception import Labeling, PerceptionConfig
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 SMALL = (960, 540)
 

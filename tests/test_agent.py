@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 
 import pytest
 
-from adamo.action import Code, Outcome, ToolSchema
-from adamo.action_server import LocalActionServer
-from adamo.cognition.agent import Agent, AgentConfig
-from adamo.cognition.termination import Limits, TerminationReason
-from adamo.cognition.trajectory import Ended, Started, Trajectory
-from adamo.errors import ProviderError
-from adamo.inference.messages import (
+from adamo_vh.action import Code, Outcome, ToolSchema
+from adamo_vh.action_server import LocalActionServer
+from adamo_vh.cognition.agent import Agent, AgentConfig
+from adamo_vh.cognition.termination import Limits, TerminationReason
+from adamo_vh.cognition.trajectory import Ended, Started, Trajectory
+from adamo_vh.errors import ProviderError
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -21,9 +21,9 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import Model, ModelKind, Reply, Sampling
-from adamo.inference.scripted import ScriptedModel
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.inference.model import Model, ModelKind, Reply, Sampling
+from adamo_vh.inference.scripted import ScriptedModel
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 
 class Recorder:

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from adamo.runtime.assets import bake, catalog, kit
-from adamo.runtime.assets.asset import Asset, Collider, Material
-from adamo.runtime.assets.mujoco_parts import COLLISION_GROUP, VISUAL_GROUP, add_asset
+from adamo_vh.runtime.assets import bake, catalog, kit
+from adamo_vh.runtime.assets.asset import Asset, Collider, Material
+from adamo_vh.runtime.assets.mujoco_parts import COLLISION_GROUP, VISUAL_GROUP, add_asset
 
 
 @dataclass(frozen=True)
@@ -268,7 +268,7 @@ def test_an_unknown_name_is_a_key_error() -> None:
 
 @pytest.fixture
 def cache_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("ADAMO_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("ADAMO_VH_CACHE_DIR", str(tmp_path))
     return tmp_path
 
 
@@ -314,7 +314,7 @@ def test_a_folder_that_cannot_be_written_costs_only_time(
 ) -> None:
     blocked = tmp_path / "a file"
     blocked.write_text("in the way")
-    monkeypatch.setenv("ADAMO_CACHE_DIR", str(blocked))
+    monkeypatch.setenv("ADAMO_VH_CACHE_DIR", str(blocked))
     assert_same(bake.load_asset("key"), built("key"))
 
 

@@ -7,7 +7,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
 
-from adamo.inference.background import _loop, run_in_background
+from adamo_vh.inference.background import _loop, run_in_background
 
 
 async def _here() -> asyncio.AbstractEventLoop:

@@ -7,11 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.baseline_rewordings import REWORDINGS
 
-from adamo.benchmark.tasks import TASKS
-from adamo.inference.baseline.goals import Description, Goal, Relation, Size
-from adamo.inference.baseline.grammar import understand
-from adamo.inference.baseline.lexicon import class_words, tokenize
-from adamo.inference.baseline.prototypes import prototypes
+from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.inference.baseline.goals import Description, Goal, Relation, Size
+from adamo_vh.inference.baseline.grammar import understand
+from adamo_vh.inference.baseline.lexicon import class_words, tokenize
+from adamo_vh.inference.baseline.prototypes import prototypes
 
 
 def _thing(description: Description) -> str:

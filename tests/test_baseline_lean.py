@@ -9,11 +9,11 @@ import pytest
 from tests.baseline_room import TOOLS, LeanRoom, TextRoom, table_items
 from tests.test_baseline_policy import ENDS, PROMPT, check
 
-from adamo.geometry import Vec3
-from adamo.inference.baseline import BaselineModel
-from adamo.inference.baseline.manner import manner_of
-from adamo.inference.baseline.reading import read_prompt
-from adamo.inference.messages import (
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline import BaselineModel
+from adamo_vh.inference.baseline.manner import manner_of
+from adamo_vh.inference.baseline.reading import read_prompt
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -23,7 +23,7 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import Sampling
+from adamo_vh.inference.model import Sampling
 
 
 @pytest.mark.parametrize("task", ENDS)

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from tests.baseline_room import TOOLS, TextRoom
 
-from adamo.geometry import Vec3
-from adamo.inference.baseline import BaselineModel
-from adamo.inference.baseline.classes import classify
-from adamo.inference.baseline.grammar import understand
-from adamo.inference.baseline.grounding import degree, thing_of
-from adamo.inference.baseline.ocr import PrintReader, installed
-from adamo.inference.baseline.sight import Sight
-from adamo.inference.baseline.words import named_kinds
-from adamo.inference.model import Sampling
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline import BaselineModel
+from adamo_vh.inference.baseline.classes import classify
+from adamo_vh.inference.baseline.grammar import understand
+from adamo_vh.inference.baseline.grounding import degree, thing_of
+from adamo_vh.inference.baseline.ocr import PrintReader, installed
+from adamo_vh.inference.baseline.sight import Sight
+from adamo_vh.inference.baseline.words import named_kinds
+from adamo_vh.inference.model import Sampling
 
 
 @pytest.mark.parametrize(
@@ -70,11 +70,11 @@ def test_without_the_extra_it_goes_on_and_says_so_once(monkeypatch):
     monkeypatch.setitem(sys.modules, "rapidocr", None)
     model, room = BaselineModel(ocr=True), TextRoom("Put the plate on the floor")
     first = model.complete(room.messages(), TOOLS, Sampling()).message
-    assert "adamo[ocr]" in first.text
+    assert "adamo-vh[ocr]" in first.text
     assert first.calls[0].name == "Pick"
     room.run()
     later = model.complete(room.messages(), TOOLS, Sampling()).message
-    assert "adamo[ocr]" not in later.text
+    assert "adamo-vh[ocr]" not in later.text
     assert BaselineModel(ocr=None).name == "baseline"
 
 

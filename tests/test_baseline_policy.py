@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.baseline_room import TOOLS, Item, TextRoom, table_items
 
-from adamo.action import Drop, Look, Pick, Walk, parse
-from adamo.benchmark.tasks import TASKS
-from adamo.geometry import Vec3
-from adamo.inference.baseline import BaselineModel
-from adamo.inference.messages import (
+from adamo_vh.action import Drop, Look, Pick, Walk, parse
+from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline import BaselineModel
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     Message,
@@ -22,7 +22,7 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import ModelKind, Sampling
+from adamo_vh.inference.model import ModelKind, Sampling
 
 PROMPT = {task.id: task.prompt for task in TASKS}
 

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import pytest
 from tests.baseline_rewordings import REWORDINGS
 
-from adamo.action import ToolSchema
-from adamo.assemble.episode import run_episode
-from adamo.benchmark.tasks import TASKS
-from adamo.cognition.termination import TerminationReason
-from adamo.inference.baseline import BaselineModel
-from adamo.inference.messages import HumanMessage, Message, TextPart
-from adamo.inference.model import Reply, Sampling
+from adamo_vh.action import ToolSchema
+from adamo_vh.assemble.episode import run_episode
+from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.inference.baseline import BaselineModel
+from adamo_vh.inference.messages import HumanMessage, Message, TextPart
+from adamo_vh.inference.model import Reply, Sampling
 
 PROMPT = {task.id: task.prompt for task in TASKS}
 SEM = [f"T{n}" for n in range(1, 14)]

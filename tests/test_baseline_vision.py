@@ -9,20 +9,20 @@ import cv2
 import numpy as np
 import pytest
 
-from adamo.geometry import Camera, Vec3
-from adamo.inference.baseline.classes import classify
-from adamo.inference.baseline.colours import shares
-from adamo.inference.baseline.drawn import brightest, drawn_over
-from adamo.inference.baseline.grammar import understand
-from adamo.inference.baseline.grounding import degree, thing_of
-from adamo.inference.baseline.print_marks import print_share
-from adamo.inference.baseline.prototypes import prototypes
-from adamo.inference.baseline.reading import Body, Listed, Prompt, Room
-from adamo.inference.baseline.sight import Sight
-from adamo.inference.baseline.silhouettes import misfits
-from adamo.inference.baseline.view import camera_of
-from adamo.inference.baseline.vision import boxed, sights
-from adamo.inference.messages import ImagePart
+from adamo_vh.geometry import Camera, Vec3
+from adamo_vh.inference.baseline.classes import classify
+from adamo_vh.inference.baseline.colours import shares
+from adamo_vh.inference.baseline.drawn import brightest, drawn_over
+from adamo_vh.inference.baseline.grammar import understand
+from adamo_vh.inference.baseline.grounding import degree, thing_of
+from adamo_vh.inference.baseline.print_marks import print_share
+from adamo_vh.inference.baseline.prototypes import prototypes
+from adamo_vh.inference.baseline.reading import Body, Listed, Prompt, Room
+from adamo_vh.inference.baseline.sight import Sight
+from adamo_vh.inference.baseline.silhouettes import misfits
+from adamo_vh.inference.baseline.view import camera_of
+from adamo_vh.inference.baseline.vision import boxed, sights
+from adamo_vh.inference.messages import ImagePart
 
 WOOD = (70, 105, 140)
 BODY = Body(Vec3(-2.0, -1.0, 0.0), 0.0, Vec3(0.0, -1.0, 0.8), "empty")

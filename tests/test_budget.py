@@ -9,19 +9,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.action import Code, Feedback, Outcome, ToolSchema
-from adamo.action_server import LocalActionServer
-from adamo.cognition.agent import Agent
-from adamo.cognition.budget import Budget, BudgetGuard, Ledger
-from adamo.cognition.forecast import forecast
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import Acted, Started, Thought, Trajectory
-from adamo.errors import ConfigError
-from adamo.geometry import Vec3
-from adamo.inference.messages import AIMessage, Message, ToolCall
-from adamo.inference.model import ModelKind, Reply, Rung, Sampling, Usage
-from adamo.observation import AgentState
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.action import Code, Feedback, Outcome, ToolSchema
+from adamo_vh.action_server import LocalActionServer
+from adamo_vh.cognition.agent import Agent
+from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo_vh.cognition.forecast import forecast
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import Acted, Started, Thought, Trajectory
+from adamo_vh.errors import ConfigError
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.messages import AIMessage, Message, ToolCall
+from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.observation import AgentState
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 AMOUNTS = st.integers(0, 10**6)
 

@@ -8,18 +8,18 @@ import sys
 import numpy as np
 import pytest
 
-from adamo.action import Code, Outcome
-from adamo.engine import FLOOR, WorldState
-from adamo.errors import EngineError
-from adamo.geometry import Vec3
-from adamo.observation import NOTHING
-from adamo.runtime import physics
-from adamo.runtime.builtin import BuiltinEngine
-from adamo.runtime.embodiment import REACH_M
-from adamo.runtime.navigation import BODY_RADIUS_M
-from adamo.runtime.rendering import SceneRenderer
-from adamo.runtime.scenes import load_scene
-from adamo.runtime.soundness import Soundness
+from adamo_vh.action import Code, Outcome
+from adamo_vh.engine import FLOOR, WorldState
+from adamo_vh.errors import EngineError
+from adamo_vh.geometry import Vec3
+from adamo_vh.observation import NOTHING
+from adamo_vh.runtime import physics
+from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.runtime.embodiment import REACH_M
+from adamo_vh.runtime.navigation import BODY_RADIUS_M
+from adamo_vh.runtime.rendering import SceneRenderer
+from adamo_vh.runtime.scenes import load_scene
+from adamo_vh.runtime.soundness import Soundness
 
 PLATE, GLASS, KEY, TAPE, CUP, BOTTLE = 57, 37, 34, 4, 45, 36
 SMALL = (480, 270)
@@ -294,7 +294,7 @@ def test_the_same_seed_gives_the_same_states_and_frames(engine: BuiltinEngine) -
 
 def test_another_process_gives_the_same_states_and_frames(engine: BuiltinEngine) -> None:
     program = (
-        "import hashlib; from adamo.runtime.builtin import BuiltinEngine;"
+        "import hashlib; from adamo_vh.runtime.builtin import BuiltinEngine;"
         "from tests.test_builtin_engine import _play;"
         "h, f = _play(BuiltinEngine('s1')); print(h, hashlib.sha256(f).hexdigest())"
     )
@@ -347,8 +347,8 @@ def test_a_damaged_snapshot_is_refused(engine: BuiltinEngine) -> None:
 def test_the_first_picture_needs_no_scipy() -> None:
     """Its import would take a tenth of the time from the start to the first frame."""
     program = (
-        "import sys; import adamo; from adamo.action_server import LocalActionServer;"
-        "LocalActionServer(adamo.create_engine('s1'), resolution=(320, 180)).observe();"
+        "import sys; import adamo_vh; from adamo_vh.action_server import LocalActionServer;"
+        "LocalActionServer(adamo_vh.create_engine('s1'), resolution=(320, 180)).observe();"
         "print(sorted(name for name in sys.modules if name.split('.')[0] == 'scipy'))"
     )
     out = subprocess.run(

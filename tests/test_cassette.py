@@ -12,15 +12,15 @@ from typing import Any
 
 import pytest
 
-from adamo.action import Look, Pick, ToolSchema, tool_schema
-from adamo.action_server import LocalActionServer
-from adamo.cognition.agent import Agent
-from adamo.cognition.instructions import system_prompt
-from adamo.cognition.trajectory import Ended, Trajectory
-from adamo.errors import CassetteError, RecordError
-from adamo.inference.baseline import BaselineModel
-from adamo.inference.cassette import CALLS, Cassette, Recorder
-from adamo.inference.messages import (
+from adamo_vh.action import Look, Pick, ToolSchema, tool_schema
+from adamo_vh.action_server import LocalActionServer
+from adamo_vh.cognition.agent import Agent
+from adamo_vh.cognition.instructions import system_prompt
+from adamo_vh.cognition.trajectory import Ended, Trajectory
+from adamo_vh.errors import CassetteError, RecordError
+from adamo_vh.inference.baseline import BaselineModel
+from adamo_vh.inference.cassette import CALLS, Cassette, Recorder
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -30,9 +30,9 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import Model, ModelKind, Reply, Rung, Sampling, Usage
-from adamo.perception import Labeling
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.inference.model import Model, ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.perception import Labeling
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 TOOLS = [tool_schema(Look), tool_schema(Pick)]
 FRAME = ImagePart(b"first frame", "image/jpeg", 480, 270)

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from adamo.assemble.chat import ChatSession
-from adamo.assemble.episode import run_episode
-from adamo.assemble.replaying import replay_episode
-from adamo.benchmark.episode import EpisodeConfig
-from adamo.cognition.budget import Budget, BudgetGuard, Ledger
-from adamo.cognition.profile import PROFILES
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import EVENTS, Trajectory, read_trajectory
-from adamo.errors import RecordError
+from adamo_vh.assemble.chat import ChatSession
+from adamo_vh.assemble.episode import run_episode
+from adamo_vh.assemble.replaying import replay_episode
+from adamo_vh.benchmark.episode import EpisodeConfig
+from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import EVENTS, Trajectory, read_trajectory
+from adamo_vh.errors import RecordError
 
 SMALL = (640, 360)
 
@@ -94,10 +94,10 @@ def test_no_conversation_is_begun_on_top_of_another(tmp_path: Path) -> None:
 
 
 def test_the_command_talks_through_a_pipe(tmp_path: Path) -> None:
-    chat = [sys.executable, "-m", "adamo", "chat", "--out", str(tmp_path / "talk")]
+    chat = [sys.executable, "-m", "adamo_vh", "chat", "--out", str(tmp_path / "talk")]
     run = subprocess.run(
         chat, input="Pick the key\n\n", capture_output=True, text=True, check=False
     )
     assert run.returncode == 0, run.stderr
     assert "Key_34" in run.stdout
-    assert "adamo chat --resume" in run.stdout
+    assert "adamo-vh chat --resume" in run.stdout

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 from tests.tabletop import CORNERS, OBJECTS, TABLE, changed, held, resting, tabletop
 
-from adamo.benchmark.checkers import OVERLAP_M, score
-from adamo.benchmark.conditions import NEAR_M, Holds, InArea, Near, OnFloor
-from adamo.benchmark.overlap import footprint_overlaps, penetration_m
-from adamo.benchmark.tasks import TASKS, Task, task
-from adamo.engine import Area, WorldState, object_support
-from adamo.geometry import Array, Box, Quaternion, Vec3
+from adamo_vh.benchmark.checkers import OVERLAP_M, score
+from adamo_vh.benchmark.conditions import NEAR_M, Holds, InArea, Near, OnFloor
+from adamo_vh.benchmark.overlap import footprint_overlaps, penetration_m
+from adamo_vh.benchmark.tasks import TASKS, Task, task
+from adamo_vh.engine import Area, WorldState, object_support
+from adamo_vh.geometry import Array, Box, Quaternion, Vec3
 
 coordinates = st.floats(-0.5, 0.5)
 lengths = st.floats(0.02, 0.6)

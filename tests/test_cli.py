@@ -17,7 +17,7 @@ SCRIPT = [
 
 def adamo(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "adamo", *arguments],
+        [sys.executable, "-m", "adamo_vh", *arguments],
         capture_output=True,
         text=True,
         cwd=cwd,

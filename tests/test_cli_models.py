@@ -1,4 +1,4 @@
-"""`adamo models check`: what a user reads about a model, with the fix for what is missing."""
+"""`adamo-vh models check`: what a user reads about a model, with the fix for what is missing."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tests.brain import Brain
 from tests.fake_provider import FakeProvider, fault
 from typer.testing import CliRunner
 
-from adamo.assemble.episode import run_episode
-from adamo.cli.app import app
-from adamo.errors import ModelConfigError
+from adamo_vh.assemble.episode import run_episode
+from adamo_vh.cli.app import app
+from adamo_vh.errors import ModelConfigError
 
 
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("ADAMO_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("ADAMO_VH_CACHE_DIR", str(tmp_path))
     return tmp_path
 
 

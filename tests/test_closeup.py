@@ -11,16 +11,23 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from adamo.action import Action, Code, Drop, Inspect, Look, Outcome, Pick, Survey, Walk
-from adamo.action_server import LEAN_TOOLS, LocalActionServer
-from adamo.geometry import Vec3
-from adamo.observation import Frame, Percept
-from adamo.perception import ImageFormat, Labeling, PerceptionConfig
-from adamo.perception.closeup import CLOSEUP_FONT_PX, CLOSEUP_PX, STRIP, aim, seen_corners, strip_px
-from adamo.perception.contact_sheet import SHEET_PX
-from adamo.perception.plates import INK, tag_colour
-from adamo.perception.visibility import PixelBox, visible_objects
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.action import Action, Code, Drop, Inspect, Look, Outcome, Pick, Survey, Walk
+from adamo_vh.action_server import LEAN_TOOLS, LocalActionServer
+from adamo_vh.geometry import Vec3
+from adamo_vh.observation import Frame, Percept
+from adamo_vh.perception import ImageFormat, Labeling, PerceptionConfig
+from adamo_vh.perception.closeup import (
+    CLOSEUP_FONT_PX,
+    CLOSEUP_PX,
+    STRIP,
+    aim,
+    seen_corners,
+    strip_px,
+)
+from adamo_vh.perception.contact_sheet import SHEET_PX
+from adamo_vh.perception.plates import INK, tag_colour
+from adamo_vh.perception.visibility import PixelBox, visible_objects
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 FULL = (1920, 1080)
 SMALL = (480, 270)
@@ -284,7 +291,7 @@ def test_a_survey_shows_exactly_what_is_listed_in_its_order(engine: BuiltinEngin
 
 @pytest.mark.parametrize(("count", "columns"), [(1, 1), (2, 2), (4, 2), (5, 3)])
 def test_few_objects_make_a_small_sheet(engine: BuiltinEngine, count: int, columns: int) -> None:
-    from adamo.perception.contact_sheet import contact_sheet
+    from adamo_vh.perception.contact_sheet import contact_sheet
 
     view = engine.capture(*FULL)
     found = visible_objects(view, 20)[:count]

@@ -13,13 +13,13 @@ from typing import Any
 
 import pytest
 
-import adamo
-from adamo.benchmark.episode import read_manifest, read_result, summarise
-from adamo.cognition.termination import Limits, TerminationReason
-from adamo.cognition.trajectory import EVENTS, FRAMES, read_trajectory
-from adamo.errors import ConfigError, RecordError
-from adamo.inference.model import ModelKind
-from adamo.runtime.builtin import BuiltinEngine
+import adamo_vh
+from adamo_vh.benchmark.episode import read_manifest, read_result, summarise
+from adamo_vh.cognition.termination import Limits, TerminationReason
+from adamo_vh.cognition.trajectory import EVENTS, FRAMES, read_trajectory
+from adamo_vh.errors import ConfigError, RecordError
+from adamo_vh.inference.model import ModelKind
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 SMALL = (480, 270)
 PLATE_TO_FLOOR = [
@@ -40,8 +40,8 @@ def script(tmp_path: Path) -> Path:
     return path
 
 
-def recorded(script: Path, folder: Path, engine: BuiltinEngine) -> adamo.EpisodeResult:
-    return adamo.run_episode(
+def recorded(script: Path, folder: Path, engine: BuiltinEngine) -> adamo_vh.EpisodeResult:
+    return adamo_vh.run_episode(
         task="T4",
         model=f"scripted:{script}",
         resolution=SMALL,
@@ -63,7 +63,7 @@ def test_a_scripted_episode_is_scored_and_recorded(
     folder = tmp_path / "run"
     manifest, trajectory = read_manifest(folder), read_trajectory(folder)
     assert manifest.config.task == "T4"
-    assert set(manifest.versions) >= {"adamo", "python", "mujoco"}
+    assert set(manifest.versions) >= {"adamo-vh", "python", "mujoco"}
     assert {view.frame for view in trajectory.views} == {
         path.name for path in (folder / FRAMES).iterdir()
     }
@@ -86,7 +86,7 @@ def test_a_replay_reproduces_every_hash_and_frame(
     script: Path, tmp_path: Path, engine: BuiltinEngine
 ) -> None:
     recorded(script, tmp_path / "run", engine)
-    report = adamo.replay_episode(tmp_path / "run")
+    report = adamo_vh.replay_episode(tmp_path / "run")
     assert (report.steps, report.mismatches, report.frames_differ) == (3, (), 0)
 
 
@@ -98,7 +98,7 @@ def test_a_replay_notices_a_changed_record(
     text = path.read_text()
     assert '"x":-1.5,"y":-2.5' in text
     path.write_text(text.replace('"x":-1.5,"y":-2.5', '"x":-1.7,"y":-2.5'))
-    report = adamo.replay_episode(tmp_path / "run")
+    report = adamo_vh.replay_episode(tmp_path / "run")
     assert any("step 3: Drop" in line for line in report.mismatches)
 
 
@@ -107,14 +107,14 @@ def test_a_recorded_run_can_be_the_model(
 ) -> None:
     first = recorded(script, tmp_path / "run", engine)
     model = f"replay:{tmp_path / 'run'}"
-    second = adamo.run_episode(task="T4", model=model, resolution=SMALL, engine=engine)
+    second = adamo_vh.run_episode(task="T4", model=model, resolution=SMALL, engine=engine)
     assert second.model_kind is ModelKind.REPLAY
     assert second.state_hash == first.state_hash
 
 
 def test_the_same_seed_twice_is_the_same_episode(script: Path, engine: BuiltinEngine) -> None:
     results = [
-        adamo.run_episode(
+        adamo_vh.run_episode(
             task="T4", model=f"scripted:{script}", seed=7, resolution=SMALL, engine=engine
         )
         for _ in range(2)
@@ -130,7 +130,7 @@ def test_a_folder_is_never_overwritten(script: Path, tmp_path: Path, engine: Bui
 
 
 def test_an_instruction_without_a_task_is_not_scored(engine: BuiltinEngine) -> None:
-    result = adamo.run_episode(
+    result = adamo_vh.run_episode(
         "Look around", resolution=SMALL, engine=engine, limits=Limits(max_steps=1)
     )
     assert result.completion is None
@@ -153,7 +153,7 @@ def test_an_instruction_without_a_task_is_not_scored(engine: BuiltinEngine) -> N
 )
 def test_wrong_settings_start_nothing(settings: dict[str, Any], part: str) -> None:
     with pytest.raises(ConfigError) as caught:
-        adamo.run_episode(**settings)
+        adamo_vh.run_episode(**settings)
     assert part in str(caught.value)
 
 
@@ -165,7 +165,7 @@ def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
     folder = tmp_path / "run"
     arguments = ["run", "Look around", "--model", f"scripted:{script}", "--out", str(folder)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "adamo", *arguments, "--resolution", "480x270"],
+        [sys.executable, "-m", "adamo_vh", *arguments, "--resolution", "480x270"],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
@@ -179,15 +179,17 @@ def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
     process.wait()
     assert len(read_trajectory(folder).acts) >= 4
     assert read_result(folder) is None
-    assert adamo.replay_episode(folder).mismatches == ()
-    resumed = adamo.resume_episode(folder)
+    assert adamo_vh.replay_episode(folder).mismatches == ()
+    resumed = adamo_vh.resume_episode(folder)
     assert resumed.steps == 24
-    straight = adamo.run_episode("Look around", model=f"scripted:{script}", resolution=(480, 270))
+    straight = adamo_vh.run_episode(
+        "Look around", model=f"scripted:{script}", resolution=(480, 270)
+    )
     assert resumed.state_hash == straight.state_hash
     assert [act.step for act in read_trajectory(folder).acts] == list(range(1, 25))
-    assert adamo.replay_episode(folder).mismatches == ()
+    assert adamo_vh.replay_episode(folder).mismatches == ()
     with pytest.raises(RecordError, match="has ended"):
-        adamo.resume_episode(folder)
+        adamo_vh.resume_episode(folder)
 
 
 @pytest.mark.parametrize("kept_lines", range(1, 11))
@@ -201,12 +203,12 @@ def test_an_episode_resumes_from_any_moment(
     lines = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join(lines[:kept_lines]) + lines[kept_lines][:20])
     (folder / "result.json").unlink()
-    again = adamo.resume_episode(folder)
+    again = adamo_vh.resume_episode(folder)
     assert again.state_hash == whole.state_hash
     assert (again.completion, again.steps, again.calls) == (1.0, whole.steps, whole.calls)
     types = [json.loads(line)["type"] for line in path.read_bytes().splitlines()]
     assert types == [json.loads(line)["type"] for line in lines]
-    assert adamo.replay_episode(folder).mismatches == ()
+    assert adamo_vh.replay_episode(folder).mismatches == ()
 
 
 @pytest.mark.parametrize("start", [0, 1, 2, 3])
@@ -214,10 +216,10 @@ def test_a_replay_can_start_at_any_step(
     start: int, script: Path, tmp_path: Path, engine: BuiltinEngine
 ) -> None:
     recorded(script, tmp_path / "run", engine)
-    report = adamo.replay_episode(tmp_path / "run", start)
+    report = adamo_vh.replay_episode(tmp_path / "run", start)
     assert (report.steps, report.mismatches, report.frames_differ) == (3 - start, (), 0)
     with pytest.raises(RecordError, match="steps 0 to 3"):
-        adamo.replay_episode(tmp_path / "run", 4)
+        adamo_vh.replay_episode(tmp_path / "run", 4)
 
 
 def test_damaged_records_are_named(script: Path, tmp_path: Path, engine: BuiltinEngine) -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.geometry import Box, Camera, Quaternion, Vec3, wrap_angle
+from adamo_vh.geometry import Box, Camera, Quaternion, Vec3, wrap_angle
 
 angles = st.floats(-math.pi, math.pi)
 coordinates = st.floats(-5, 5)

@@ -11,15 +11,15 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from adamo.errors import ConfigError
-from adamo.geometry import Camera, Vec3
-from adamo.runtime.human.clips import Clip
-from adamo.runtime.human.glb import linear, write_glb
-from adamo.runtime.human.looks import HEAD_GARMENTS, VARIANTS, load_figure
-from adamo.runtime.human.modelling.variant import PEOPLE
-from adamo.runtime.human.skeleton import EYES, INDEX, JOINTS, REST, Pose, joint_frames
-from adamo.runtime.human.skin_mujoco import add_human, body_name, pose_human
-from adamo.runtime.rendering import SceneRenderer
+from adamo_vh.errors import ConfigError
+from adamo_vh.geometry import Camera, Vec3
+from adamo_vh.runtime.human.clips import Clip
+from adamo_vh.runtime.human.glb import linear, write_glb
+from adamo_vh.runtime.human.looks import HEAD_GARMENTS, VARIANTS, load_figure
+from adamo_vh.runtime.human.modelling.variant import PEOPLE
+from adamo_vh.runtime.human.skeleton import EYES, INDEX, JOINTS, REST, Pose, joint_frames
+from adamo_vh.runtime.human.skin_mujoco import add_human, body_name, pose_human
+from adamo_vh.runtime.rendering import SceneRenderer
 
 CLOTHES = ("top", "collar", "trousers", "shoes")
 
@@ -74,7 +74,7 @@ def test_a_person_is_light_enough_to_draw(figure):
 
 
 def test_a_person_takes_little_room_in_the_package(figure):
-    path = files("adamo.runtime.human") / "data" / f"{figure.variant}.npz"
+    path = files("adamo_vh.runtime.human") / "data" / f"{figure.variant}.npz"
     assert len(path.read_bytes()) < 600_000
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from adamo.geometry import Array
-from adamo.runtime.human.modelling import clothes, face, hair
-from adamo.runtime.human.modelling.binding import bind
-from adamo.runtime.human.modelling.hands import hand
-from adamo.runtime.human.modelling.meshing import Mesh, daylight, largest, merged, smoothed, tube
-from adamo.runtime.human.modelling.shapes import (
+from adamo_vh.geometry import Array
+from adamo_vh.runtime.human.modelling import clothes, face, hair
+from adamo_vh.runtime.human.modelling.binding import bind
+from adamo_vh.runtime.human.modelling.hands import hand
+from adamo_vh.runtime.human.modelling.meshing import Mesh, daylight, largest, merged, smoothed, tube
+from adamo_vh.runtime.human.modelling.shapes import (
     both,
     common,
     ellipsoid,
@@ -22,8 +22,8 @@ from adamo.runtime.human.modelling.shapes import (
     round_cone,
     union,
 )
-from adamo.runtime.human.modelling.variant import PEOPLE
-from adamo.runtime.human.skeleton import EYES, INDEX, REST
+from adamo_vh.runtime.human.modelling.variant import PEOPLE
+from adamo_vh.runtime.human.skeleton import EYES, INDEX, REST
 
 BALL = ellipsoid((0.0, 0.0, 0.0), (0.1, 0.1, 0.1))
 

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from adamo.geometry import Vec3, wrap_angle
-from adamo.runtime.embodiment import Body
-from adamo.runtime.human.anatomy import centre_of_mass, grip, limit_excess, mirrored
-from adamo.runtime.human.clips import clips, walk_clip
-from adamo.runtime.human.gait import gait
-from adamo.runtime.human.ik import ANKLE_M, STANDING_FEET, plant_feet
-from adamo.runtime.human.motion import (
+from adamo_vh.geometry import Vec3, wrap_angle
+from adamo_vh.runtime.embodiment import Body
+from adamo_vh.runtime.human.anatomy import centre_of_mass, grip, limit_excess, mirrored
+from adamo_vh.runtime.human.clips import clips, walk_clip
+from adamo_vh.runtime.human.gait import gait
+from adamo_vh.runtime.human.ik import ANKLE_M, STANDING_FEET, plant_feet
+from adamo_vh.runtime.human.motion import (
     BodyFrame,
     Motion,
     drop_motion,
@@ -25,9 +25,9 @@ from adamo.runtime.human.motion import (
     pick_motion,
     walk_motion,
 )
-from adamo.runtime.human.postures import CARRY, at_rest, carrying, gazing, line_of_gaze, standing
-from adamo.runtime.human.reach import reaching
-from adamo.runtime.human.rotations import (
+from adamo_vh.runtime.human.postures import CARRY, at_rest, carrying, gazing, line_of_gaze, standing
+from adamo_vh.runtime.human.reach import reaching
+from adamo_vh.runtime.human.rotations import (
     about,
     angles,
     blended,
@@ -35,10 +35,10 @@ from adamo.runtime.human.rotations import (
     looking,
     quaternions,
 )
-from adamo.runtime.human.route import route
-from adamo.runtime.human.skeleton import INDEX, JOINTS, joint_frames
-from adamo.runtime.human.stretch import stretch_to
-from adamo.runtime.navigation import Path
+from adamo_vh.runtime.human.route import route
+from adamo_vh.runtime.human.skeleton import INDEX, JOINTS, joint_frames
+from adamo_vh.runtime.human.stretch import stretch_to
+from adamo_vh.runtime.navigation import Path
 
 RATE_HZ = 60
 MOST_TURN_DEG = 14.0

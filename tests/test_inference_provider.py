@@ -13,10 +13,10 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from tests.fake_provider import Answers, Canned, FakeProvider, Json, call, completion, fault
 
-from adamo.action import Drop, Look, Pick, Walk, tool_schema
-from adamo.errors import ProviderError
-from adamo.inference.endpoint import NO_REMOTE
-from adamo.inference.messages import (
+from adamo_vh.action import Drop, Look, Pick, Walk, tool_schema
+from adamo_vh.errors import ProviderError
+from adamo_vh.inference.endpoint import NO_REMOTE
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -26,9 +26,9 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import ModelKind, Reply, Sampling, Usage
-from adamo.inference.provider import ProviderModel
-from adamo.inference.retry import RetryPolicy
+from adamo_vh.inference.model import ModelKind, Reply, Sampling, Usage
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.retry import RetryPolicy
 
 KEY = "hush-5f0c2b7e91d4"
 TOOLS = [tool_schema(action) for action in (Look, Walk, Pick, Drop)]

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from adamo.errors import AdamoError, ModelConfigError
-from adamo.inference.endpoint import NO_REMOTE
-from adamo.inference.model import ModelKind
-from adamo.inference.registry import create_model
+from adamo_vh.errors import AdamoError, ModelConfigError
+from adamo_vh.inference.endpoint import NO_REMOTE
+from adamo_vh.inference.model import ModelKind
+from adamo_vh.inference.registry import create_model
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,8 @@ def test_a_bad_address_is_refused_and_never_repeated(uri: str, fix: str) -> None
 
 def test_importing_inference_loads_no_provider_library() -> None:
     code = (
-        "import sys, adamo.inference.registry, adamo.inference.provider, adamo.inference.probe;"
+        "import sys, adamo_vh.inference.registry;"
+        "import adamo_vh.inference.provider, adamo_vh.inference.probe;"
         "sys.exit('pydantic_ai' in sys.modules or 'openai' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

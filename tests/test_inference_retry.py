@@ -7,12 +7,12 @@ import time
 import pytest
 from tests.fake_provider import Canned, FakeProvider, completion, fault
 
-from adamo.errors import ConfigError, ProviderError, RefusedError
-from adamo.inference.endpoint import NO_REMOTE
-from adamo.inference.messages import HumanMessage, TextPart
-from adamo.inference.model import Reply, Sampling
-from adamo.inference.provider import ProviderModel
-from adamo.inference.retry import Failure, RetryPolicy, run_with_retries
+from adamo_vh.errors import ConfigError, ProviderError, RefusedError
+from adamo_vh.inference.endpoint import NO_REMOTE
+from adamo_vh.inference.messages import HumanMessage, TextPart
+from adamo_vh.inference.model import Reply, Sampling
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.retry import Failure, RetryPolicy, run_with_retries
 
 ASK = (HumanMessage((TextPart("Pick the plate"),)),)
 QUICK = RetryPolicy(max_tries=3, max_wait_s=5.0, base_s=0.001, timeout_s=5.0)

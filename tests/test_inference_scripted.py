@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from adamo.errors import ConfigError
-from adamo.inference.messages import AIMessage, ToolCall
-from adamo.inference.model import ModelKind, Sampling, Usage
-from adamo.inference.registry import create_model
-from adamo.inference.scripted import FINISHED, ScriptedModel, load_script
+from adamo_vh.errors import ConfigError
+from adamo_vh.inference.messages import AIMessage, ToolCall
+from adamo_vh.inference.model import ModelKind, Sampling, Usage
+from adamo_vh.inference.registry import create_model
+from adamo_vh.inference.scripted import FINISHED, ScriptedModel, load_script
 
 PICK = {"tool": "Pick", "args": {"object": "Plate_57"}, "note": "The plate is in view."}
 LOOK: dict[str, Any] = {"tool": "Look", "args": {"x": 1.5, "y": 0, "z": 0.8}}

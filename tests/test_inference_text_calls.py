@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.inference.arguments import UNREADABLE, read_arguments, wire_arguments
-from adamo.inference.messages import ToolCall
-from adamo.inference.text_calls import fresh_id, recognise_call
+from adamo_vh.inference.arguments import UNREADABLE, read_arguments, wire_arguments
+from adamo_vh.inference.messages import ToolCall
+from adamo_vh.inference.text_calls import fresh_id, recognise_call
 
 TOOLS = ("Look", "Walk", "Pick", "Drop")
 CALL = '{"name": "Pick", "arguments": {"object": "Plate_57"}}'

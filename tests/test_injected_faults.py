@@ -9,20 +9,20 @@ from typing import Any
 import httpx
 import pytest
 
-import adamo
-from adamo.action import Code
-from adamo.adapters.fault_rules import Faults, Rule, What, load_faults
-from adamo.adapters.model_serving import serve_model
-from adamo.adapters.openai_endpoint import Served
-from adamo.benchmark.episode import EpisodeResult
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import Trajectory
-from adamo.errors import ConfigError
-from adamo.inference.ladder import Ladder
-from adamo.inference.model import Rung
-from adamo.inference.provider import ProviderModel
-from adamo.inference.retry import RetryPolicy
-from adamo.runtime.builtin import BuiltinEngine
+import adamo_vh
+from adamo_vh.action import Code
+from adamo_vh.adapters.fault_rules import Faults, Rule, What, load_faults
+from adamo_vh.adapters.model_serving import serve_model
+from adamo_vh.adapters.openai_endpoint import Served
+from adamo_vh.benchmark.episode import EpisodeResult
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import Trajectory
+from adamo_vh.errors import ConfigError
+from adamo_vh.inference.ladder import Ladder
+from adamo_vh.inference.model import Rung
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.retry import RetryPolicy
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 QUICK = RetryPolicy(max_tries=3, max_wait_s=5.0, base_s=0.01, timeout_s=0.5)
 SMALL = (640, 360)
@@ -45,7 +45,7 @@ def play(
     trajectory, seen = Trajectory(), list[Served]()
     with serve_model("baseline", tools=tools, faults=rules, watch=seen.append) as served:
         inner = ProviderModel(served.uri, QUICK)
-        result = adamo.run_episode(
+        result = adamo_vh.run_episode(
             task=task,
             model=Ladder(inner, rung),
             engine=engine,
@@ -59,7 +59,7 @@ def play(
 @pytest.fixture(scope="module")
 def undisturbed(s1_engine: BuiltinEngine) -> EpisodeResult:
     s1_engine.reset(0)
-    result = adamo.run_episode(task="T4", engine=s1_engine, resolution=SMALL)
+    result = adamo_vh.run_episode(task="T4", engine=s1_engine, resolution=SMALL)
     assert (result.completion, result.steps) == (1.0, 2)
     return result
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from adamo.runtime.assets import catalog, labels
-from adamo.runtime.assets.asset import Asset, Part
-from adamo.runtime.assets.labels import Band, Label, Line, Motif
+from adamo_vh.runtime.assets import catalog, labels
+from adamo_vh.runtime.assets.asset import Asset, Part
+from adamo_vh.runtime.assets.labels import Band, Label, Line, Motif
 
 LABELLED = ("peanut_butter", "tomato_soup", "pills", "painkiller", "wine_bottle")
 BLACK, WHITE = (0, 0, 0), (255, 255, 255)

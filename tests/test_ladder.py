@@ -10,10 +10,10 @@ from typing import Annotated, Any
 import pytest
 from pydantic import Field
 
-from adamo.action import Drop, Look, Pick, Survey, ToolSchema, Walk, tool_schema
-from adamo.inference.ladder import Ladder
-from adamo.inference.ladder.json_form import JsonForm
-from adamo.inference.messages import (
+from adamo_vh.action import Drop, Look, Pick, Survey, ToolSchema, Walk, tool_schema
+from adamo_vh.inference.ladder import Ladder
+from adamo_vh.inference.ladder.json_form import JsonForm
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -23,7 +23,7 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling, Usage
 
 TOOLS = [tool_schema(action) for action in (Look, Walk, Pick, Drop, Survey)]
 FRAME = ImagePart(b"first", "image/jpeg", 1920, 1080)

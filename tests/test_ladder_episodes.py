@@ -8,20 +8,20 @@ import pytest
 from tests.brain import Brain, Step
 from tests.fake_provider import Canned, FakeProvider, Json, completion
 
-import adamo
-from adamo.action import action_name, arguments_of
-from adamo.action_server import LocalActionServer
-from adamo.benchmark.oracle import Oracle
-from adamo.benchmark.tasks import task as find_task
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import Trajectory
-from adamo.inference.ladder import Ladder
-from adamo.inference.model import Rung
-from adamo.inference.provider import ProviderModel
-from adamo.inference.registry import create_model
-from adamo.inference.retry import RetryPolicy
-from adamo.perception import Labeling, PerceptionConfig
-from adamo.runtime.builtin import BuiltinEngine
+import adamo_vh
+from adamo_vh.action import action_name, arguments_of
+from adamo_vh.action_server import LocalActionServer
+from adamo_vh.benchmark.oracle import Oracle
+from adamo_vh.benchmark.tasks import task as find_task
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import Trajectory
+from adamo_vh.inference.ladder import Ladder
+from adamo_vh.inference.model import Rung
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.registry import create_model
+from adamo_vh.inference.retry import RetryPolicy
+from adamo_vh.perception import Labeling, PerceptionConfig
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 QUICK = RetryPolicy(max_tries=2, max_wait_s=2.0, base_s=0.01, timeout_s=10.0)
 SIZE = (960, 540)
@@ -52,7 +52,7 @@ def test_every_rung_reaches_the_same_completion(engine: BuiltinEngine, task: str
         trajectory = Trajectory()
         with FakeProvider(brain) as server:
             model = Ladder(ProviderModel(server.uri(), QUICK), rung)
-            result = adamo.run_episode(
+            result = adamo_vh.run_episode(
                 task=task, model=model, engine=engine, resolution=SIZE, observers=[trajectory]
             )
             model.close()
@@ -89,13 +89,13 @@ def test_the_probe_finds_the_rung_on_which_the_model_succeeds(
     schema: str,
     rung: Rung,
 ) -> None:
-    monkeypatch.setenv("ADAMO_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("ADAMO_VH_CACHE_DIR", str(tmp_path))
     brain = Brain(oracle_steps(engine, "T1"), tools=tools, schema=schema)
     with FakeProvider(brain) as server:
         model = create_model(server.uri(), QUICK)
         assert isinstance(model, Ladder)
         assert model.rung is rung
-        result = adamo.run_episode(task="T1", model=model, engine=engine, resolution=SIZE)
+        result = adamo_vh.run_episode(task="T1", model=model, engine=engine, resolution=SIZE)
         model.close()
     assert result.completion == 1.0
 
@@ -110,7 +110,7 @@ def test_the_lean_profile_works_without_tool_calls(engine: BuiltinEngine, rung: 
     trajectory = Trajectory()
     with FakeProvider(brain) as server:
         model = Ladder(ProviderModel(server.uri(), QUICK), rung)
-        result = adamo.run_episode(
+        result = adamo_vh.run_episode(
             task="T4",
             model=model,
             engine=engine,
@@ -130,7 +130,7 @@ def test_every_request_of_a_rung_without_tools_has_plain_turns(engine: BuiltinEn
     brain = Brain(oracle_steps(engine, "T4"))
     with FakeProvider(brain) as server:
         model = Ladder(ProviderModel(server.uri(), QUICK), Rung.REACT)
-        adamo.run_episode(task="T4", model=model, engine=engine, resolution=SIZE)
+        adamo_vh.run_episode(task="T4", model=model, engine=engine, resolution=SIZE)
         model.close()
     for number, request in enumerate(brain.asked):
         roles = [message["role"] for message in request["messages"]]
@@ -148,7 +148,7 @@ def test_garbage_is_counted_and_not_scored_as_an_answer(engine: BuiltinEngine) -
     trajectory = Trajectory()
     with FakeProvider(answer) as server:
         model = Ladder(ProviderModel(server.uri(), QUICK), Rung.REACT)
-        adamo.run_episode(
+        adamo_vh.run_episode(
             task="T1", model=model, engine=engine, resolution=SIZE, observers=[trajectory]
         )
         model.close()

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.action import Drop, Look, Pick, Survey, Walk, tool_schema
-from adamo.inference.ladder.json_form import JsonForm
-from adamo.inference.ladder.react_form import ReactForm
-from adamo.inference.ladder.steps import Form, Step, Unreadable
+from adamo_vh.action import Drop, Look, Pick, Survey, Walk, tool_schema
+from adamo_vh.inference.ladder.json_form import JsonForm
+from adamo_vh.inference.ladder.react_form import ReactForm
+from adamo_vh.inference.ladder.steps import Form, Step, Unreadable
 
 TOOLS = [tool_schema(action) for action in (Look, Walk, Pick, Drop, Survey)]
 FORMS = [JsonForm(), ReactForm()]

@@ -92,7 +92,7 @@ def test_importing_a_module_imports_nothing_heavy() -> None:
     assert {where: heavy for where, heavy in named.items() if heavy} == {}
 
 
-@pytest.mark.parametrize("module", ["adamo", "adamo.cli"])
+@pytest.mark.parametrize("module", ["adamo_vh", "adamo_vh.cli"])
 def test_a_command_starts_without_heavy_libraries(module: str) -> None:
     code = f"import json, sys, {module}; print(json.dumps(sorted(sys.modules)))"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

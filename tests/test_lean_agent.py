@@ -8,15 +8,15 @@ from typing import Any
 
 import pytest
 
-from adamo.action import ToolSchema
-from adamo.action_server import LEAN_TOOLS, LocalActionServer
-from adamo.cognition.agent import Agent, AgentConfig
-from adamo.cognition.profile import PROFILES, Profile
-from adamo.cognition.termination import Limits, TerminationReason
-from adamo.cognition.trajectory import Acted, Ended, Observed, Shown, Trajectory
-from adamo.inference.messages import AIMessage, HumanMessage, Message, ToolCall, ToolMessage
-from adamo.inference.model import ModelKind, Reply, Sampling
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.action import ToolSchema
+from adamo_vh.action_server import LEAN_TOOLS, LocalActionServer
+from adamo_vh.cognition.agent import Agent, AgentConfig
+from adamo_vh.cognition.profile import PROFILES, Profile
+from adamo_vh.cognition.termination import Limits, TerminationReason
+from adamo_vh.cognition.trajectory import Acted, Ended, Observed, Shown, Trajectory
+from adamo_vh.inference.messages import AIMessage, HumanMessage, Message, ToolCall, ToolMessage
+from adamo_vh.inference.model import ModelKind, Reply, Sampling
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 TERSE = PROFILES["lean"]
 LEAN = replace(TERSE, terse=False)

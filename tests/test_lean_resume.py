@@ -11,16 +11,16 @@ from typing import Any
 import pytest
 from tests.test_lean_agent import Player, finish, noted, says
 
-import adamo
-from adamo.action import ToolSchema
-from adamo.assemble.chat import ChatSession
-from adamo.benchmark.episode import RESULT, EpisodeConfig, read_result
-from adamo.cognition.profile import PROFILES
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import EVENTS, LeftOut, Trajectory, read_trajectory
-from adamo.errors import ProviderError, RecordError
-from adamo.inference.messages import AIMessage, Message, ToolCall
-from adamo.inference.model import Reply, Sampling
+import adamo_vh
+from adamo_vh.action import ToolSchema
+from adamo_vh.assemble.chat import ChatSession
+from adamo_vh.benchmark.episode import RESULT, EpisodeConfig, read_result
+from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import EVENTS, LeftOut, Trajectory, read_trajectory
+from adamo_vh.errors import ProviderError, RecordError
+from adamo_vh.inference.messages import AIMessage, Message, ToolCall
+from adamo_vh.inference.model import Reply, Sampling
 
 SMALL = (480, 270)
 PLACE: dict[str, Any] = {"x": -1.5, "y": -2.5, "z": 0.0}
@@ -56,7 +56,7 @@ class Live(Player):
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("lean") / "run"
-    result = adamo.run_episode(
+    result = adamo_vh.run_episode(
         task="T4", model=Live(0), profile="lean", resolution=SMALL, out=folder
     )
     assert (result.completion, result.termination) == (1.0, TerminationReason.ANSWERED)
@@ -69,7 +69,7 @@ def kinds(folder: Path) -> list[str]:
 
 def test_every_kind_of_event_is_in_the_record(whole: Path) -> None:
     assert kinds(whole) == KINDS
-    assert adamo.replay_episode(whole).mismatches == ()
+    assert adamo_vh.replay_episode(whole).mismatches == ()
 
 
 @pytest.mark.parametrize("kept", range(len(KINDS) + 1))
@@ -85,7 +85,7 @@ def test_a_kill_between_any_two_events_loses_nothing(
     (folder / EVENTS).write_bytes(b"".join(lines[:kept]) + half)
     (folder / RESULT).unlink()
     answered = len(read_trajectory(folder).thoughts)
-    after = adamo.resume_episode(folder, model=Live(answered))
+    after = adamo_vh.resume_episode(folder, model=Live(answered))
     assert after.state_hash == before.state_hash
     assert (after.completion, after.calls) == (before.completion, before.calls)
     assert kinds(folder) == KINDS
@@ -94,7 +94,7 @@ def test_a_kill_between_any_two_events_loses_nothing(
 
 def test_what_ended_with_a_result_has_ended(whole: Path) -> None:
     with pytest.raises(RecordError, match="has ended"):
-        adamo.resume_episode(whole, model=Live(len(SAID)))
+        adamo_vh.resume_episode(whole, model=Live(len(SAID)))
 
 
 def test_what_comes_out_otherwise_is_not_written_over(whole: Path, tmp_path: Path) -> None:
@@ -106,13 +106,15 @@ def test_what_comes_out_otherwise_is_not_written_over(whole: Path, tmp_path: Pat
     text = text.replace('"x":-1.5,"y":-2.5', '"x":-1.7,"y":-2.5')
     (folder / EVENTS).write_text("".join(text.splitlines(keepends=True)[:-1]))
     with pytest.raises(RecordError, match="came out otherwise"):
-        adamo.resume_episode(folder, model=Live(len(SAID)))
+        adamo_vh.resume_episode(folder, model=Live(len(SAID)))
     assert kinds(folder) == KINDS[:-1]
 
 
 def test_a_recorded_run_is_said_again_with_what_could_not_be_read(whole: Path) -> None:
     before = read_result(whole)
-    again = adamo.run_episode(task="T4", model=f"replay:{whole}", profile="lean", resolution=SMALL)
+    again = adamo_vh.run_episode(
+        task="T4", model=f"replay:{whole}", profile="lean", resolution=SMALL
+    )
     assert before is not None
     assert (again.state_hash, again.unreadable) == (before.state_hash, 1)
 
@@ -148,9 +150,9 @@ def test_a_conversation_with_a_fault_in_it_is_gone_on_with(tmp_path: Path) -> No
         assert heard.events == []
         assert session.say("Put the plate on the floor").reason is TerminationReason.ANSWERED
     assert (tmp_path / EVENTS).read_bytes().startswith(before)
-    assert adamo.replay_episode(tmp_path).mismatches == ()
+    assert adamo_vh.replay_episode(tmp_path).mismatches == ()
     with pytest.raises(RecordError, match="is a conversation"):
-        adamo.resume_episode(tmp_path)
+        adamo_vh.resume_episode(tmp_path)
 
 
 def test_an_answer_stays_in_the_memory_of_the_conversation(tmp_path: Path) -> None:
@@ -168,7 +170,9 @@ def test_an_answer_stays_in_the_memory_of_the_conversation(tmp_path: Path) -> No
 def test_what_was_left_out_is_on_record(tmp_path: Path) -> None:
     calls = tuple(ToolCall("same", "Pick", {"object": "57"}) for _ in range(50))
     player = Player([Reply(AIMessage("All.", calls)), Reply(AIMessage("Done."))])
-    adamo.run_episode("Take it", model=player, resolution=SMALL, out=tmp_path, switches={"plan": 3})
+    adamo_vh.run_episode(
+        "Take it", model=player, resolution=SMALL, out=tmp_path, switches={"plan": 3}
+    )
     left_out = [e.why for e in read_trajectory(tmp_path).events if isinstance(e, LeftOut)]
     assert len(left_out) == 48
     assert set(left_out) == {

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.action import Outcome
-from adamo.cognition.memory import Result, ShortTermMemory
-from adamo.cognition.profile import PAPER, PROFILES, Profile, StateText
-from adamo.errors import ConfigError
-from adamo.geometry import Camera, Vec3
-from adamo.inference.messages import (
+from adamo_vh.action import Outcome
+from adamo_vh.cognition.memory import Result, ShortTermMemory
+from adamo_vh.cognition.profile import PAPER, PROFILES, Profile, StateText
+from adamo_vh.errors import ConfigError
+from adamo_vh.geometry import Camera, Vec3
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -23,7 +23,7 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
+from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
 
 LEAN = replace(PROFILES["lean"], terse=False)
 EYES = Vec3(0.0, 0.0, 1.6)

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from adamo.runtime.assets import kit
-from adamo.runtime.assets.asset import Material
-from adamo.runtime.assets.kit import Mesh
+from adamo_vh.runtime.assets import kit
+from adamo_vh.runtime.assets.asset import Material
+from adamo_vh.runtime.assets.kit import Mesh
 
 ARCH = kit.fillet([(0, 0, 0), (0, 0, 2), (2, 0, 2), (2, 0, 0)], 0.9, 8)
 L_SHAPE = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]

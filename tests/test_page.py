@@ -15,16 +15,16 @@ import pytest
 from tests.run_folder import Recorder, config, played
 from tests.tabletop import tabletop
 
-from adamo.action import Code, Feedback, Look, Outcome, Pick
-from adamo.benchmark.episode import (
+from adamo_vh.action import Code, Feedback, Look, Outcome, Pick
+from adamo_vh.benchmark.episode import (
     MANIFEST,
     write_record,
 )
-from adamo.benchmark.floor_plan import floor_plan
-from adamo.benchmark.page import PAGE, render_page, write_page
-from adamo.benchmark.timeline import CallText, turns
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import (
+from adamo_vh.benchmark.floor_plan import floor_plan
+from adamo_vh.benchmark.page import PAGE, render_page, write_page
+from adamo_vh.benchmark.timeline import CallText, turns
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import (
     FRAMES,
     Acted,
     Observed,
@@ -32,9 +32,9 @@ from adamo.cognition.trajectory import (
     TrajectoryWriter,
     read_trajectory,
 )
-from adamo.errors import RecordError
-from adamo.geometry import Quaternion
-from adamo.inference.messages import ToolCall
+from adamo_vh.errors import RecordError
+from adamo_vh.geometry import Quaternion
+from adamo_vh.inference.messages import ToolCall
 
 HOSTILE = "</p></script><script>alert(1)</script><img src=x onerror=alert(2)> \"'{{ 7*7 }}"
 

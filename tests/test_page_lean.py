@@ -13,16 +13,16 @@ from tests.run_folder import Recorder, config
 from tests.tabletop import carried_out
 from tests.test_page import HOSTILE, Page, page_of
 
-from adamo.action import Code, Feedback, Look, Outcome, Walk
-from adamo.benchmark.floor_plan import floor_plan
-from adamo.benchmark.timeline import Turn, turns
-from adamo.cognition.budget import Budget
-from adamo.cognition.profile import PROFILES
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import Ended, Started, Thought, read_trajectory, shown
-from adamo.inference.messages import ToolCall
-from adamo.inference.model import Rung, Usage
-from adamo.observation import Frame
+from adamo_vh.action import Code, Feedback, Look, Outcome, Walk
+from adamo_vh.benchmark.floor_plan import floor_plan
+from adamo_vh.benchmark.timeline import Turn, turns
+from adamo_vh.cognition.budget import Budget
+from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import Ended, Started, Thought, read_trajectory, shown
+from adamo_vh.inference.messages import ToolCall
+from adamo_vh.inference.model import Rung, Usage
+from adamo_vh.observation import Frame
 
 LEAN = PROFILES["lean"]
 DONE = Feedback(Outcome.DONE, Code.OK, "Done: so it is.")

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from adamo.runtime.assets import catalog, labels, paint
-from adamo.runtime.assets.asset import Asset, Material
-from adamo.runtime.assets.labels import Band, Label, Line, Motif
-from adamo.runtime.assets.room import room
+from adamo_vh.runtime.assets import catalog, labels, paint
+from adamo_vh.runtime.assets.asset import Asset, Material
+from adamo_vh.runtime.assets.labels import Band, Label, Line, Motif
+from adamo_vh.runtime.assets.room import room
 
 PICTURES: dict[str, Callable[[], paint.Picture]] = {
     "wood": lambda: paint.wood(64, 128, (150, 104, 66), 1),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from tests.percepts import NAMES
 
-from adamo.perception import Labeling
+from adamo_vh.perception import Labeling
 
 
 def test_semantic_tag_tells_class_and_id():

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from PIL import Image
 from tests.percepts import NAMES, camera, ids, percept, sphere_hits, tabletop
 
-from adamo.observation import ObservedObject
-from adamo.perception.clutter import Clutter
-from adamo.perception.overlay import ImageFormat, OverlayScale, draw_overlay, layout
-from adamo.perception.plates import plate, tag_colour
-from adamo.perception.reference_points import reference_points
-from adamo.perception.tag_layout import TagRequest, place_tags
-from adamo.perception.visibility import visible_objects
+from adamo_vh.observation import ObservedObject
+from adamo_vh.perception.clutter import Clutter
+from adamo_vh.perception.overlay import ImageFormat, OverlayScale, draw_overlay, layout
+from adamo_vh.perception.plates import plate, tag_colour
+from adamo_vh.perception.reference_points import reference_points
+from adamo_vh.perception.tag_layout import TagRequest, place_tags
+from adamo_vh.perception.visibility import visible_objects
 
 SIZES = [(640, 360), (1280, 720), (1920, 1080)]
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from tests.percepts import NAMES, ids, percept, sphere_hits, tabletop
 
-import adamo.perception
-from adamo.errors import ConfigError, EngineError
-from adamo.geometry import Box, Vec3
-from adamo.perception import (
+import adamo_vh.perception
+from adamo_vh.errors import ConfigError, EngineError
+from adamo_vh.geometry import Box, Vec3
+from adamo_vh.perception import (
     ImageFormat,
     Labeling,
     PerceptionConfig,
@@ -21,17 +21,17 @@ from adamo.perception import (
     perceive,
     point_lines,
 )
-from adamo.perception.clutter import Clutter
-from adamo.perception.overlay import layout
-from adamo.perception.visibility import visible_objects
+from adamo_vh.perception.clutter import Clutter
+from adamo_vh.perception.overlay import layout
+from adamo_vh.perception.visibility import visible_objects
 
 PNG = PerceptionConfig(image_format=ImageFormat.PNG)
 
 
 def test_the_public_surface():
-    assert adamo.perception.__all__ == sorted(adamo.perception.__all__)
-    for name in adamo.perception.__all__:
-        assert hasattr(adamo.perception, name)
+    assert adamo_vh.perception.__all__ == sorted(adamo_vh.perception.__all__)
+    for name in adamo_vh.perception.__all__:
+        assert hasattr(adamo_vh.perception, name)
 
 
 @pytest.mark.parametrize("labeling", Labeling)

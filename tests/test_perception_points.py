@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.percepts import camera, floor_hits, sphere_hits
 
-from adamo.perception.reference_points import grid_pixels, reference_points
+from adamo_vh.perception.reference_points import grid_pixels, reference_points
 
 
 def test_columns_go_left_to_right_each_from_bottom_to_top():

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from adamo.geometry import Vec3
-from adamo.observation import AgentState, ObservedObject, ReferencePoint
-from adamo.perception import TextForm, agent_lines, object_lines, point_lines
+from adamo_vh.geometry import Vec3
+from adamo_vh.observation import AgentState, ObservedObject, ReferencePoint
+from adamo_vh.perception import TextForm, agent_lines, object_lines, point_lines
 
 PLATE = ObservedObject(
     "Plate_57", Vec3(0.326, -0.603, 0.795), 0.25 * 0.25 * 0.03, (812, 500, 910, 560), 3000

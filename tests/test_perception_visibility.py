@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from tests.percepts import ids, percept
 
-from adamo.observation import NOTHING
-from adamo.perception.visibility import VisibleObject, pixel_threshold, visible_objects
+from adamo_vh.observation import NOTHING
+from adamo_vh.perception.visibility import VisibleObject, pixel_threshold, visible_objects
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.geometry import Vec3
-from adamo.runtime.placement import CLEARANCE_M, MAX_CORRECTION_M, free_spots, spread
-from adamo.runtime.solids import Solid, gaps
-from adamo.runtime.world import WorldSurface
+from adamo_vh.geometry import Vec3
+from adamo_vh.runtime.placement import CLEARANCE_M, MAX_CORRECTION_M, free_spots, spread
+from adamo_vh.runtime.solids import Solid, gaps
+from adamo_vh.runtime.world import WorldSurface
 
 TABLE = WorldSurface("table", Vec3(0, 0, 0.78), 0.5, 0.8, 0.0)
 FLOOR = WorldSurface("floor", Vec3(0, 0, 0.0), 3.0, 3.0, 0.0)

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.errors import ConfigError
-from adamo.inference.model import Usage
-from adamo.inference.pricing import PRICES, Price, cost_usd, prices_file
+from adamo_vh.errors import ConfigError
+from adamo_vh.inference.model import Usage
+from adamo_vh.inference.pricing import PRICES, Price, cost_usd, prices_file
 
 SOME = Usage(1000, 1000)
 OWN = "openai:qwen@http://127.0.0.1:8000/v1"

@@ -9,8 +9,8 @@ import pytest
 from tests.brain import Brain
 from tests.fake_provider import Canned, FakeProvider, Json, completion, fault
 
-from adamo.errors import ModelConfigError, ModelError
-from adamo.inference.capabilities import (
+from adamo_vh.errors import ModelConfigError, ModelError
+from adamo_vh.inference.capabilities import (
     Capabilities,
     Support,
     ToolSupport,
@@ -18,19 +18,19 @@ from adamo.inference.capabilities import (
     load_capabilities,
     save_capabilities,
 )
-from adamo.inference.ladder import Ladder
-from adamo.inference.messages import HumanMessage, TextPart
-from adamo.inference.model import Rung, Sampling, Usage
-from adamo.inference.probe import probe
-from adamo.inference.registry import create_model
-from adamo.inference.retry import RetryPolicy
+from adamo_vh.inference.ladder import Ladder
+from adamo_vh.inference.messages import HumanMessage, TextPart
+from adamo_vh.inference.model import Rung, Sampling, Usage
+from adamo_vh.inference.probe import probe
+from adamo_vh.inference.registry import create_model
+from adamo_vh.inference.retry import RetryPolicy
 
 QUICK = RetryPolicy(max_tries=2, max_wait_s=2.0, base_s=0.001, timeout_s=5.0)
 
 
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("ADAMO_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("ADAMO_VH_CACHE_DIR", str(tmp_path))
     return tmp_path
 
 
@@ -214,6 +214,6 @@ def test_a_cache_that_cannot_be_written_is_no_error(
 ) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("")
-    monkeypatch.setenv("ADAMO_CACHE_DIR", str(blocked))
+    monkeypatch.setenv("ADAMO_VH_CACHE_DIR", str(blocked))
     save_capabilities(FOUND)
     assert load_capabilities(FOUND.uri) is None

@@ -9,20 +9,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.action import Drop, Inspect, Look, Pick, Survey, Walk
-from adamo.action_server import LEAN_TOOLS, PAPER_TOOLS
-from adamo.assemble.players import fitting
-from adamo.benchmark.conditions import NEAR_M
-from adamo.cognition.instructions import system_prompt
-from adamo.cognition.profile import PAPER, PROFILES, SWITCHES, Profile, StateText, profile
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.turns import FINISH, offered, read_turn, reasoning
-from adamo.errors import ConfigError
-from adamo.inference.messages import AIMessage, ToolCall
-from adamo.inference.model import Reply
-from adamo.inference.scripted import ScriptedModel
-from adamo.perception import Labeling
-from adamo.runtime.scenes import load_scene
+from adamo_vh.action import Drop, Inspect, Look, Pick, Survey, Walk
+from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS
+from adamo_vh.assemble.players import fitting
+from adamo_vh.benchmark.conditions import NEAR_M
+from adamo_vh.cognition.instructions import system_prompt
+from adamo_vh.cognition.profile import PAPER, PROFILES, SWITCHES, Profile, StateText, profile
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.turns import FINISH, offered, read_turn, reasoning
+from adamo_vh.errors import ConfigError
+from adamo_vh.inference.messages import AIMessage, ToolCall
+from adamo_vh.inference.model import Reply
+from adamo_vh.inference.scripted import ScriptedModel
+from adamo_vh.perception import Labeling
+from adamo_vh.runtime.scenes import load_scene
 
 LEAN = PROFILES["lean"]
 BODY = (Look, Walk, Pick, Drop)

@@ -8,10 +8,10 @@ from typing import Any
 
 from rich.console import Console
 
-from adamo.action import Code, Feedback, Outcome
-from adamo.cli.progress import Progress
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import (
+from adamo_vh.action import Code, Feedback, Outcome
+from adamo_vh.cli.progress import Progress
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import (
     Acted,
     Ended,
     Event,
@@ -21,10 +21,10 @@ from adamo.cognition.trajectory import (
     Started,
     Thought,
 )
-from adamo.geometry import Vec3
-from adamo.inference.messages import ToolCall
-from adamo.inference.model import Usage
-from adamo.observation import AgentState
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.messages import ToolCall
+from adamo_vh.inference.model import Usage
+from adamo_vh.observation import AgentState
 
 AGENT = AgentState(Vec3(0, 0, 0), 0.0, Vec3(1, 0, 1), Vec3(0, 0, 1.6))
 STARTED = Started("Take the key", "You are the mind.", "h", "{}")

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from adamo.action import Drop, Look, Pick, Walk
-from adamo.benchmark.conditions import NEAR_M
-from adamo.cognition.instructions import system_prompt
-from adamo.cognition.prompts import render
-from adamo.errors import ConfigError
-from adamo.perception import Labeling
-from adamo.runtime.scenes import load_scene
+from adamo_vh.action import Drop, Look, Pick, Walk
+from adamo_vh.benchmark.conditions import NEAR_M
+from adamo_vh.cognition.instructions import system_prompt
+from adamo_vh.cognition.prompts import render
+from adamo_vh.errors import ConfigError
+from adamo_vh.perception import Labeling
+from adamo_vh.runtime.scenes import load_scene
 
 GOLDEN = Path(__file__).parent / "golden"
 ACTIONS = (Look, Walk, Pick, Drop)

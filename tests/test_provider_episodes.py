@@ -7,11 +7,11 @@ from tests.dialects import DIALECTS, INPUT, OUTPUT, Dialect, uri
 from tests.fake_provider import FakeProvider
 from tests.talk import NAMES, QUICK
 
-import adamo
-from adamo.cognition.termination import Limits, TerminationReason
-from adamo.cognition.trajectory import Trajectory
-from adamo.inference.provider import ProviderModel
-from adamo.runtime.builtin import BuiltinEngine
+import adamo_vh
+from adamo_vh.cognition.termination import Limits, TerminationReason
+from adamo_vh.cognition.trajectory import Trajectory
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 
 @pytest.mark.parametrize("dialect", DIALECTS, ids=NAMES)
@@ -27,7 +27,7 @@ def test_t1_is_finished_on_every_wire(dialect: Dialect, engine: BuiltinEngine) -
         FakeProvider(answers) as server,
         ProviderModel(uri(dialect, server), QUICK) as model,
     ):
-        result = adamo.run_episode(
+        result = adamo_vh.run_episode(
             task="T1",
             model=model,
             engine=engine,

@@ -15,13 +15,13 @@ from tests.dialects import DIALECTS, Anthropic, Chat, Dialect, Google, Responses
 from tests.fake_provider import Canned, FakeProvider, fault
 from tests.talk import ASK, NAMES, QUICK, TOOLS, tell
 
-from adamo.errors import ProviderError, RefusedError
-from adamo.inference.endpoint import NO_REMOTE
-from adamo.inference.exchange import Exchange
-from adamo.inference.faults import read_exchange, refused_setting
-from adamo.inference.model import Sampling
-from adamo.inference.provider import ProviderModel
-from adamo.inference.retry import RetryPolicy
+from adamo_vh.errors import ProviderError, RefusedError
+from adamo_vh.inference.endpoint import NO_REMOTE
+from adamo_vh.inference.exchange import Exchange
+from adamo_vh.inference.faults import read_exchange, refused_setting
+from adamo_vh.inference.model import Sampling
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.retry import RetryPolicy
 
 every_wire = pytest.mark.parametrize("dialect", DIALECTS, ids=NAMES)
 

@@ -7,8 +7,8 @@ from tests.dialects import CACHED, DIALECTS, INPUT, OUTPUT, REASONING, Dialect
 from tests.providers.dialect import Call
 from tests.talk import ASK, FIRST, NAMES, SECOND, TOOLS, calls, tell
 
-from adamo.action import ToolSchema
-from adamo.inference.messages import (
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     SystemMessage,
@@ -16,7 +16,7 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import Rung, Usage
+from adamo_vh.inference.model import Rung, Usage
 
 pytestmark = pytest.mark.parametrize("dialect", DIALECTS, ids=NAMES)
 

@@ -7,11 +7,11 @@ from tests.dialects import DIALECTS, Anthropic, Chat, Dialect, Responses, uri
 from tests.fake_provider import Canned, FakeProvider, Json
 from tests.talk import ASK, NAMES, QUICK, TOOLS, tell
 
-from adamo.action import Pick, tool_schema
-from adamo.errors import ProviderError, RefusedError
-from adamo.inference.messages import SystemMessage
-from adamo.inference.model import Sampling
-from adamo.inference.provider import ProviderModel
+from adamo_vh.action import Pick, tool_schema
+from adamo_vh.errors import ProviderError, RefusedError
+from adamo_vh.inference.messages import SystemMessage
+from adamo_vh.inference.model import Sampling
+from adamo_vh.inference.provider import ProviderModel
 
 every_wire = pytest.mark.parametrize("dialect", DIALECTS, ids=NAMES)
 

@@ -11,11 +11,11 @@ from tests.dialects import DIALECTS, Chat, Dialect, Google, uri
 from tests.fake_provider import FakeProvider
 from tests.talk import ASK, NAMES, QUICK, SECOND, TOOLS, calls
 
-from adamo.errors import ModelConfigError
-from adamo.inference.endpoint import NO_REMOTE, Endpoint, parse_endpoint
-from adamo.inference.messages import ToolMessage
-from adamo.inference.model import Sampling
-from adamo.inference.provider import ProviderModel
+from adamo_vh.errors import ModelConfigError
+from adamo_vh.inference.endpoint import NO_REMOTE, Endpoint, parse_endpoint
+from adamo_vh.inference.messages import ToolMessage
+from adamo_vh.inference.model import Sampling
+from adamo_vh.inference.provider import ProviderModel
 
 every_wire = pytest.mark.parametrize("dialect", DIALECTS, ids=NAMES)
 KEYS = (
@@ -110,7 +110,7 @@ def test_a_missing_extra_of_ours_is_named(monkeypatch: pytest.MonkeyPatch, extra
         return load(name, *args)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(ModelConfigError, match=rf"pip install 'adamo\[{extra}\]'"):
+    with pytest.raises(ModelConfigError, match=rf"pip install 'adamo-vh\[{extra}\]'"):
         ProviderModel(f"{extra}:some-model@http://127.0.0.1:9")
 
 

@@ -7,8 +7,8 @@ from collections import Counter
 import pytest
 from tests.baseline_room import FINISH, TOOLS, LeanRoom, TextRoom, with_notes
 
-from adamo.action import Drop, Look, Pick, Walk, parse
-from adamo.inference.messages import (
+from adamo_vh.action import Drop, Look, Pick, Walk, parse
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     Message,
@@ -16,8 +16,8 @@ from adamo.inference.messages import (
     TextPart,
     ToolMessage,
 )
-from adamo.inference.model import ModelKind, Sampling
-from adamo.inference.random_calls import END_CHANCE, RandomModel
+from adamo_vh.inference.model import ModelKind, Sampling
+from adamo_vh.inference.random_calls import END_CHANCE, RandomModel
 
 LEAN = [with_notes(tool) for tool in (*TOOLS, FINISH)]
 

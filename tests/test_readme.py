@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-import adamo
+import adamo_vh
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -28,8 +28,8 @@ def test_links_lead_somewhere() -> None:
 
 
 def test_the_public_names_are_sorted_complete_and_there() -> None:
-    assert list(adamo.__all__) == sorted(adamo.__all__)
-    for name in adamo.__all__:
-        assert getattr(adamo, name) is not None
+    assert list(adamo_vh.__all__) == sorted(adamo_vh.__all__)
+    for name in adamo_vh.__all__:
+        assert getattr(adamo_vh, name) is not None
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
-        adamo.nonsense  # noqa: B018
+        adamo_vh.nonsense  # noqa: B018

@@ -7,24 +7,24 @@ from typing import Any
 import pytest
 from tests.fake_provider import Canned, FakeProvider, call, completion, fault
 
-import adamo
-from adamo.action import Code
-from adamo.cognition.termination import Limits, TerminationReason
-from adamo.cognition.trajectory import Trajectory
-from adamo.inference.model import ModelKind
-from adamo.inference.provider import ProviderModel
-from adamo.inference.retry import RetryPolicy
-from adamo.runtime.builtin import BuiltinEngine
+import adamo_vh
+from adamo_vh.action import Code
+from adamo_vh.cognition.termination import Limits, TerminationReason
+from adamo_vh.cognition.trajectory import Trajectory
+from adamo_vh.inference.model import ModelKind
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.retry import RetryPolicy
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 QUICK = RetryPolicy(max_tries=2, max_wait_s=2.0, base_s=0.01, timeout_s=5.0)
 PICK = call("Pick", {"object": "34"})
 
 
-def run(engine: BuiltinEngine, *answers: Canned) -> tuple[adamo.EpisodeResult, Trajectory, Any]:
+def run(engine: BuiltinEngine, *answers: Canned) -> tuple[adamo_vh.EpisodeResult, Trajectory, Any]:
     trajectory = Trajectory()
     with FakeProvider(answers) as server:
         model = ProviderModel(server.uri(), QUICK)
-        result = adamo.run_episode(
+        result = adamo_vh.run_episode(
             task="T1",
             model=model,
             engine=engine,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from adamo.geometry import Array
-from adamo.runtime.human.rotations import (
+from adamo_vh.geometry import Array
+from adamo_vh.runtime.human.rotations import (
     angles,
     blended,
     from_quaternions,

@@ -8,19 +8,19 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from adamo.action import Outcome
-from adamo.benchmark.tasks import TASKS
-from adamo.benchmark.verify import verify_tasks
-from adamo.engine import FLOOR, Area
-from adamo.geometry import Vec3
-from adamo.perception import Labeling
-from adamo.perception.visibility import visible_objects
-from adamo.runtime.assets.bake import load_asset
-from adamo.runtime.builtin import BuiltinEngine
-from adamo.runtime.embodiment import REACH_M, REACH_TOP_M
-from adamo.runtime.human.looks import load_figure
-from adamo.runtime.scenes import load_scene
-from adamo.runtime.world import World, build_world
+from adamo_vh.action import Outcome
+from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.benchmark.verify import verify_tasks
+from adamo_vh.engine import FLOOR, Area
+from adamo_vh.geometry import Vec3
+from adamo_vh.perception import Labeling
+from adamo_vh.perception.visibility import visible_objects
+from adamo_vh.runtime.assets.bake import load_asset
+from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.runtime.embodiment import REACH_M, REACH_TOP_M
+from adamo_vh.runtime.human.looks import load_figure
+from adamo_vh.runtime.scenes import load_scene
+from adamo_vh.runtime.world import World, build_world
 
 TABLE, COFFEE, SIDEBOARD = "dining table", "coffee table/top", "sideboard"
 LOWER, MIDDLE, TOP = "tall shelf/lower", "tall shelf/middle", "tall shelf/top"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from adamo.errors import SceneError
-from adamo.runtime.scenes import load_scene, parse_scene, scene_names
+from adamo_vh.errors import SceneError
+from adamo_vh.runtime.scenes import load_scene, parse_scene, scene_names
 
 S1_PLACES = {
     0: (0.076, -1.353), 2: (-0.360, -0.850), 3: (-0.174, -0.853), 4: (-0.174, -0.603),

@@ -1,4 +1,4 @@
-"""`adamo scenes check`: sound scenes pass, and what is wrong is found and named."""
+"""`adamo-vh scenes check`: sound scenes pass, and what is wrong is found and named."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any
 
 import pytest
 
-from adamo.errors import SceneError
-from adamo.runtime.builtin import BuiltinEngine
-from adamo.runtime.scenes import load_scene, parse_scene
-from adamo.runtime.scenes.arrangement import inspect_arrangement
-from adamo.runtime.scenes.finding import Severity
-from adamo.runtime.scenes.inspection import inspect_scene
+from adamo_vh.errors import SceneError
+from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.runtime.scenes import load_scene, parse_scene
+from adamo_vh.runtime.scenes.arrangement import inspect_arrangement
+from adamo_vh.runtime.scenes.finding import Severity
+from adamo_vh.runtime.scenes.inspection import inspect_scene
 
-S1 = (resources.files("adamo.runtime.scenes") / "s1_tabletop.toml").read_text(encoding="utf-8")
+S1 = (resources.files("adamo_vh.runtime.scenes") / "s1_tabletop.toml").read_text(encoding="utf-8")
 HEAD = S1[: S1.index("[[objects]]")]
 
 
@@ -111,7 +111,7 @@ def test_a_pile_can_be_run_without_a_traceback(tmp_path: Path) -> None:
     path.write_text(pile("tape", 100))
     command = ["run", "Pick the tape", "--scene", str(path), "--model", "baseline"]
     done = subprocess.run(
-        [sys.executable, "-m", "adamo", *command],
+        [sys.executable, "-m", "adamo_vh", *command],
         capture_output=True,
         text=True,
         cwd=tmp_path,
@@ -145,7 +145,7 @@ def test_out_of_time_is_said(engine: BuiltinEngine) -> None:
 
 def check(path: Path) -> tuple[int, dict[str, Any]]:
     done = subprocess.run(
-        [sys.executable, "-m", "adamo", "scenes", "check", str(path), "--json"],
+        [sys.executable, "-m", "adamo_vh", "scenes", "check", str(path), "--json"],
         capture_output=True,
         text=True,
         cwd=path.parent,

@@ -15,10 +15,10 @@ import openai
 import pytest
 from PIL import Image
 
-from adamo.adapters.model_serving import ServedModel, serve_model
-from adamo.adapters.openai_messages import read_request
-from adamo.errors import ConfigError
-from adamo.inference.messages import (
+from adamo_vh.adapters.model_serving import ServedModel, serve_model
+from adamo_vh.adapters.openai_messages import read_request
+from adamo_vh.errors import ConfigError
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -27,7 +27,7 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.scripted import ScriptedModel
+from adamo_vh.inference.scripted import ScriptedModel
 
 Json = dict[str, Any]
 

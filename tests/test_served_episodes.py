@@ -15,19 +15,19 @@ import httpx
 import pytest
 from typer.testing import CliRunner
 
-import adamo
-from adamo.action import Look, Pick, Survey, ToolSchema, tool_schema
-from adamo.adapters.fault_rules import Faults, WithoutTools
-from adamo.adapters.model_serving import serve_model
-from adamo.adapters.openai_messages import ChatRequest
-from adamo.adapters.toolless import Form, conversation, written
-from adamo.errors import ProviderError
-from adamo.inference.cassette import Recorder
-from adamo.inference.ladder import Ladder
-from adamo.inference.ladder.conversation import rewritten
-from adamo.inference.ladder.json_form import JsonForm
-from adamo.inference.ladder.react_form import ReactForm
-from adamo.inference.messages import (
+import adamo_vh
+from adamo_vh.action import Look, Pick, Survey, ToolSchema, tool_schema
+from adamo_vh.adapters.fault_rules import Faults, WithoutTools
+from adamo_vh.adapters.model_serving import serve_model
+from adamo_vh.adapters.openai_messages import ChatRequest
+from adamo_vh.adapters.toolless import Form, conversation, written
+from adamo_vh.errors import ProviderError
+from adamo_vh.inference.cassette import Recorder
+from adamo_vh.inference.ladder import Ladder
+from adamo_vh.inference.ladder.conversation import rewritten
+from adamo_vh.inference.ladder.json_form import JsonForm
+from adamo_vh.inference.ladder.react_form import ReactForm
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -37,12 +37,12 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import ModelKind, Rung, Sampling
-from adamo.inference.probe import probe
-from adamo.inference.provider import ProviderModel
-from adamo.inference.registry import create_model
-from adamo.inference.retry import RetryPolicy
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.inference.model import ModelKind, Rung, Sampling
+from adamo_vh.inference.probe import probe
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.registry import create_model
+from adamo_vh.inference.retry import RetryPolicy
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 QUICK = RetryPolicy(max_tries=2, max_wait_s=2.0, base_s=0.01, timeout_s=20.0)
 SMALL = (640, 360)
@@ -50,10 +50,10 @@ TOOLS = [tool_schema(action) for action in (Look, Pick, Survey)]
 FRAME = ImagePart(b"...", "image/jpeg", 4, 3)
 
 
-def compare(engine: BuiltinEngine, model: Any, **settings: Any) -> adamo.EpisodeResult:
+def compare(engine: BuiltinEngine, model: Any, **settings: Any) -> adamo_vh.EpisodeResult:
     """Play an episode with the baseline here and with a served one, and compare."""
-    here = adamo.run_episode(engine=engine, **settings)
-    there = adamo.run_episode(model=model, engine=engine, **settings)
+    here = adamo_vh.run_episode(engine=engine, **settings)
+    there = adamo_vh.run_episode(model=model, engine=engine, **settings)
     assert (there.state_hash, there.steps) == (here.state_hash, here.steps)
     assert (there.completion, there.answer) == (here.completion, here.answer)
     return there
@@ -202,7 +202,7 @@ def test_a_script_is_served_too(engine: BuiltinEngine, tmp_path: Path) -> None:
     with serve_model(f"scripted:{path}") as served:
         model = ProviderModel(served.uri, QUICK)
         assert model.kind is ModelKind.VLM
-        result = adamo.run_episode(task="T1", model=model, engine=engine, resolution=SMALL)
+        result = adamo_vh.run_episode(task="T1", model=model, engine=engine, resolution=SMALL)
     assert (result.completion, result.answer) == (1.0, "The script is finished.")
 
 
@@ -219,9 +219,9 @@ def test_a_cassette_is_served_and_refuses_another_prompt(
 ) -> None:
     settings: dict[str, Any] = {"task": "T4", "engine": engine, "resolution": SMALL}
     recorder = Recorder(create_model("baseline"), tmp_path / "tape")
-    recorded = adamo.run_episode(model=recorder, **settings)
+    recorded = adamo_vh.run_episode(model=recorder, **settings)
     with serve_model(f"cassette:{tmp_path / 'tape'}") as served:
-        played = adamo.run_episode(model=ProviderModel(served.uri, QUICK), **settings)
+        played = adamo_vh.run_episode(model=ProviderModel(served.uri, QUICK), **settings)
     assert (played.completion, played.state_hash) == (1.0, recorded.state_hash)
     with serve_model(f"cassette:{tmp_path / 'tape'}") as served:
         prompt = [HumanMessage((TextPart("Something else"),))]
@@ -231,7 +231,7 @@ def test_a_cassette_is_served_and_refuses_another_prompt(
 
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
 def test_the_command_serves_until_it_is_stopped(tmp_path: Path, stop: signal.Signals) -> None:
-    command = [sys.executable, "-u", "-m", "adamo", "serve-model", "baseline", "--port", "0"]
+    command = [sys.executable, "-u", "-m", "adamo_vh", "serve-model", "baseline", "--port", "0"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=tmp_path) as process:
         assert process.stdout is not None
         address = process.stdout.readline().split()[-1]
@@ -249,7 +249,7 @@ def test_the_command_serves_until_it_is_stopped(tmp_path: Path, stop: signal.Sig
 
 
 def test_the_command_explains_itself() -> None:
-    from adamo.cli.app import app
+    from adamo_vh.cli.app import app
 
     shown = CliRunner().invoke(app, ["serve-model", "--help"], env={"COLUMNS": "200"}).output
     for word in ("baseline", "loopback", "--no-tools", "--faults", "retry_after_s", "every"):

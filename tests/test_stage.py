@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from adamo.action import Code, Outcome
-from adamo.adapters.video import HEIGHT, WIDTH, VideoRecorder
-from adamo.engine import BodyReport
-from adamo.errors import ConfigError
-from adamo.geometry import Vec3
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.action import Code, Outcome
+from adamo_vh.adapters.video import HEIGHT, WIDTH, VideoRecorder
+from adamo_vh.engine import BodyReport
+from adamo_vh.errors import ConfigError
+from adamo_vh.geometry import Vec3
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 PLATE, CUP = 57, 45
 FLOOR = Vec3(-1.6, -2.4, 0.0)

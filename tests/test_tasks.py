@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 from tests.tabletop import OBJECTS, carried_out, held, resting, tabletop
 
-from adamo.action import Drop, Look, Pick, Walk
-from adamo.benchmark.checkers import Score, score
-from adamo.benchmark.conditions import Condition, Holds, Near, OnFloor
-from adamo.benchmark.oracle import PATIENCE, Oracle, first_half
-from adamo.benchmark.tasks import TASKS, Family, Task, task
-from adamo.benchmark.taxonomy import Act, Difficulty
-from adamo.engine import WorldState
-from adamo.errors import ConfigError
+from adamo_vh.action import Drop, Look, Pick, Walk
+from adamo_vh.benchmark.checkers import Score, score
+from adamo_vh.benchmark.conditions import Condition, Holds, Near, OnFloor
+from adamo_vh.benchmark.oracle import PATIENCE, Oracle, first_half
+from adamo_vh.benchmark.tasks import TASKS, Family, Task, task
+from adamo_vh.benchmark.taxonomy import Act, Difficulty
+from adamo_vh.engine import WorldState
+from adamo_vh.errors import ConfigError
 
 STEP_CAP = 60
 

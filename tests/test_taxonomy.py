@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.benchmark.taxonomy import COSTS, Act, Difficulty, Ref, Rel, Unit
+from adamo_vh.benchmark.taxonomy import COSTS, Act, Difficulty, Ref, Rel, Unit
 
 units = st.lists(st.sampled_from(sorted(COSTS)), max_size=30)
 

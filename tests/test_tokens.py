@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo.action import Drop, Look, Pick, ToolSchema, Walk, tool_schema
-from adamo.inference.messages import (
+from adamo_vh.action import Drop, Look, Pick, ToolSchema, Walk, tool_schema
+from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
     ImagePart,
@@ -19,9 +19,9 @@ from adamo.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo.inference.model import ModelKind, Reply, Sampling, Usage
-from adamo.inference.scripted import ScriptedModel
-from adamo.inference.tokens import (
+from adamo_vh.inference.model import ModelKind, Reply, Sampling, Usage
+from adamo_vh.inference.scripted import ScriptedModel
+from adamo_vh.inference.tokens import (
     ANTHROPIC,
     ANTHROPIC_HIGH,
     GEMINI,

@@ -13,14 +13,14 @@ from tests.dialects import DIALECTS, Anthropic, Chat, Dialect, uri
 from tests.fake_provider import FakeProvider, completion
 from tests.talk import ASK, NAMES, QUICK, TOOLS, tell
 
-from adamo.cognition.termination import TerminationReason
-from adamo.cognition.trajectory import Ended, Event, TrajectoryWriter, read_trajectory, thought
-from adamo.errors import ProviderError, RefusedError
-from adamo.inference.arguments import read_arguments
-from adamo.inference.ladder import Ladder
-from adamo.inference.model import Model, Rung, Sampling
-from adamo.inference.provider import ProviderModel
-from adamo.inference.retry import RetryPolicy
+from adamo_vh.cognition.termination import TerminationReason
+from adamo_vh.cognition.trajectory import Ended, Event, TrajectoryWriter, read_trajectory, thought
+from adamo_vh.errors import ProviderError, RefusedError
+from adamo_vh.inference.arguments import read_arguments
+from adamo_vh.inference.ladder import Ladder
+from adamo_vh.inference.model import Model, Rung, Sampling
+from adamo_vh.inference.provider import ProviderModel
+from adamo_vh.inference.retry import RetryPolicy
 
 every_wire = pytest.mark.parametrize("dialect", DIALECTS, ids=NAMES)
 SURROGATE = "\ud800"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from adamo.benchmark.oracle import first_half
-from adamo.benchmark.tasks import TASKS, Task
-from adamo.benchmark.verify import play_oracle, verify_tasks
-from adamo.perception import Labeling
-from adamo.runtime.builtin import BuiltinEngine
+from adamo_vh.benchmark.oracle import first_half
+from adamo_vh.benchmark.tasks import TASKS, Task
+from adamo_vh.benchmark.verify import play_oracle, verify_tasks
+from adamo_vh.perception import Labeling
+from adamo_vh.runtime.builtin import BuiltinEngine
 
 ids = [task.id for task in TASKS]
 

@@ -21,10 +21,10 @@ from hypothesis.stateful import (
 )
 from PIL import Image
 
-from adamo.action import Outcome, parse
-from adamo.action_server import LocalActionServer, execute_call
-from adamo.errors import InvalidActionError
-from adamo.perception import (
+from adamo_vh.action import Outcome, parse
+from adamo_vh.action_server import LocalActionServer, execute_call
+from adamo_vh.errors import InvalidActionError
+from adamo_vh.perception import (
     ImageFormat,
     Labeling,
     PerceptionConfig,
@@ -32,10 +32,10 @@ from adamo.perception import (
     agent_lines,
     object_lines,
 )
-from adamo.perception.plates import tag_colour
-from adamo.perception.visibility import visible_objects
-from adamo.runtime.builtin import BuiltinEngine
-from adamo.runtime.soundness import Soundness, step_faults, view_faults
+from adamo_vh.perception.plates import tag_colour
+from adamo_vh.perception.visibility import visible_objects
+from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.runtime.soundness import Soundness, step_faults, view_faults
 
 RESOLUTION = (320, 180)
 MARGIN_PX = 4

@@ -12,11 +12,11 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from adamo.runtime.human.modelling.figure import build_figure
-from adamo.runtime.human.modelling.storage import save_figure
-from adamo.runtime.human.modelling.variant import PEOPLE
+from adamo_vh.runtime.human.modelling.figure import build_figure
+from adamo_vh.runtime.human.modelling.storage import save_figure
+from adamo_vh.runtime.human.modelling.variant import PEOPLE
 
-DATA = Path(__file__).resolve().parents[1] / "src" / "adamo" / "runtime" / "human" / "data"
+DATA = Path(__file__).resolve().parents[1] / "src" / "adamo_vh" / "runtime" / "human" / "data"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -95,7 +95,7 @@ can_draw() {
     "$venv/bin/python" - >"$log" 2>&1 <<'PROBE'
 import mujoco
 
-from adamo.runtime.rendering import open_gl
+from adamo_vh.runtime.rendering import open_gl
 
 context = open_gl(16, 16)
 context.make_current()
@@ -106,7 +106,7 @@ PROBE
 }
 
 setup_gl() {
-    "$venv/bin/python" -c 'import mujoco, adamo.runtime.rendering' >"$log" 2>&1 ||
+    "$venv/bin/python" -c 'import mujoco, adamo_vh.runtime.rendering' >"$log" 2>&1 ||
         die "$(tail -n 1 "$log")" "$venv does not work. Fix: make clean, then run make again."
     if can_draw; then return 0; fi
     if can_apt; then

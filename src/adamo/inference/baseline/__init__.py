@@ -1,5 +1,0 @@
-"""The embedded default model: grammar, symbolic text and classical vision; no learned weights."""
-
-from adamo.inference.baseline.model import BaselineModel
-
-__all__ = ["BaselineModel"]

@@ -1,0 +1,227 @@
+"""What the agent can do: typed actions, their tool schemas, and the feedback on them.
+
+One frozen dataclass is the tool schema, the validation, the wire message and the log record of an
+action. A new tool is a new dataclass; what carries it out is paired with it in
+`adamo_vh.action_server.Tool`, the one place where tools are added.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from functools import cache
+from typing import Annotated, Any, ClassVar, Protocol
+
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+
+from adamo_vh.errors import InvalidActionError
+
+_STRICT = ConfigDict(
+    extra="forbid", coerce_numbers_to_str=True, str_strip_whitespace=True, str_max_length=100
+)
+
+_X = Annotated[float, Field(description="World X in metres.", allow_inf_nan=False)]
+_Y = Annotated[float, Field(description="World Y in metres.", allow_inf_nan=False)]
+_Z = Annotated[
+    float, Field(description="World Z in metres; the floor is at 0.", allow_inf_nan=False)
+]
+
+
+class Action(Protocol):
+    """Any frozen dataclass whose fields are the arguments of a tool."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """Turn body and gaze to a point in the room and receive a new view from there."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+
+    x: _X
+    y: _Y
+    z: _Z
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """Walk to a point on the floor, or to the nearest reachable place to it."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+
+    x: _X
+    y: _Y
+    z: _Z
+
+
+@dataclass(frozen=True, slots=True)
+class Pick:
+    """Take an object that you have seen into your hand, walking closer if it is out of reach."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+
+    object: Annotated[str, Field(description="Tag of the object, as shown in the view.")]
+
+
+@dataclass(frozen=True, slots=True)
+class Drop:
+    """Put the object in your hand down at a point, walking closer if it is out of reach."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+
+    object: Annotated[str, Field(description="Tag of the object in your hand.")]
+    x: _X
+    y: _Y
+    z: _Z
+
+
+@dataclass(frozen=True, slots=True)
+class Inspect:
+    """See an object in view or in hand close up, large enough to read what is printed on it."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+
+    object: Annotated[str, Field(description="Tag of the object, as shown in the view.")]
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """See all objects in view close up on one sheet, each with its tag."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+
+
+class Outcome(StrEnum):
+    """How an action ended."""
+
+    DONE = "done"
+    CORRECTED = "corrected"
+    """Carried out, but not as asked; the text says what was corrected."""
+    REFUSED = "refused"
+    """Nothing changed; the text says why."""
+
+
+class Code(StrEnum):
+    """The finer reason behind an outcome. Tools from outside may add their own strings."""
+
+    OK = "ok"
+    REPOSITIONED = "repositioned"
+    """Done, after walking closer."""
+
+    STOPPED_SHORT = "stopped_short"
+    """Walk ended at the nearest reachable place."""
+    GAZE_LIMITED = "gaze_limited"
+    """The neck does not turn that far."""
+    PLACED_ELSEWHERE = "placed_elsewhere"
+    """Drop went to the nearest free spot."""
+
+    CANCELLED = "cancelled"
+    """Stopped on request, before the end."""
+
+    UNKNOWN_TOOL = "unknown_tool"
+    BAD_ARGUMENT = "bad_argument"
+    UNKNOWN_TAG = "unknown_tag"
+    NOT_SEEN = "not_seen"
+    NOT_IN_VIEW = "not_in_view"
+    OUTSIDE_ROOM = "outside_room"
+    HAND_FULL = "hand_full"
+    HAND_EMPTY = "hand_empty"
+    NOT_HELD = "not_held"
+    NOT_EXECUTED = "not_executed"
+    """A further call in the same turn."""
+
+    UNREACHABLE = "unreachable"
+    NO_FREE_SPOT = "no_free_spot"
+
+
+@dataclass(frozen=True, slots=True)
+class Feedback:
+    """What the agent is told about its last tool call."""
+
+    outcome: Outcome
+    code: str
+    """One of `Code`, or a string of a tool added from outside."""
+    text: str
+    """One short, truthful sentence or two."""
+    walked_m: float = 0.0
+    """Length of the way that the body walked for it, metres."""
+
+    @classmethod
+    def of_error(cls, error: InvalidActionError) -> Feedback:
+        """The refusal that an invalid call gets: nothing changed in the world."""
+        return cls(Outcome.REFUSED, error.code, f"Refused: {error}")
+
+
+@dataclass(frozen=True, slots=True)
+class ToolSchema:
+    """A tool as a model sees it."""
+
+    name: str
+    description: str
+    parameters: dict[str, Any]
+    """JSON schema of the arguments."""
+
+
+def action_name(action_type: type) -> str:
+    """The tool name of an action type: its class name."""
+    return action_type.__name__
+
+
+@cache
+def _codec(action_type: type) -> TypeAdapter[Any]:
+    return TypeAdapter(action_type)
+
+
+@cache
+def tool_schema(action_type: type) -> ToolSchema:
+    """Generate the tool schema of an action from its dataclass."""
+    schema = _codec(action_type).json_schema()
+    schema.pop("title", None)
+    schema.pop("description", None)
+    for field in schema.get("properties", {}).values():
+        field.pop("title", None)
+    description = inspect.cleandoc(action_type.__doc__ or "").split("\n\n")[0]
+    return ToolSchema(action_name(action_type), description.replace("\n", " "), schema)
+
+
+def parse(name: str, arguments: Mapping[str, Any] | None, actions: Iterable[type]) -> Any:
+    """Turn a model's tool call into a typed action.
+
+    Args:
+        name: Tool name as the model wrote it.
+        arguments: Arguments, or None if they could not be read as a JSON object.
+        actions: The action types that are on offer.
+
+    Returns:
+        An instance of one of `actions`.
+
+    Raises:
+        InvalidActionError: The tool is unknown or an argument is missing, unknown or malformed.
+    """
+    known = {action_name(a): a for a in actions}
+    if name not in known:
+        offer = ", ".join(known)
+        raise InvalidActionError(
+            Code.UNKNOWN_TOOL, f"there is no tool named {name[:60]!r}. Tools: {offer}."
+        )
+    signature = ", ".join(tool_schema(known[name]).parameters.get("properties", {}))
+    if arguments is None:
+        raise InvalidActionError(
+            Code.BAD_ARGUMENT, f"the arguments are not a JSON object. Usage: {name}({signature})."
+        )
+    try:
+        return _codec(known[name]).validate_python(dict(arguments))
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"]) or "arguments"
+        raise InvalidActionError(
+            Code.BAD_ARGUMENT, f"{where}: {first['msg']}. Usage: {name}({signature})."
+        ) from None
+
+
+def arguments_of(action: Action) -> dict[str, Any]:
+    """The arguments of an action as a plain dict: the inverse of `parse`."""
+    return asdict(action)

@@ -1,0 +1,202 @@
+"""The Action Server in the same process as the engine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, ClassVar
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
+from adamo_vh.action import Action, Code, Feedback, Outcome, action_name
+from adamo_vh.action_server.protocol import ActionResult
+from adamo_vh.action_server.tools import PAPER_TOOLS, Tool
+from adamo_vh.engine import Engine
+from adamo_vh.errors import EngineError, InvalidActionError
+from adamo_vh.geometry import Vec3
+from adamo_vh.observation import AgentState, Frame, Observation, Percept
+from adamo_vh.perception import PerceptionConfig, agent_state, perceive
+from adamo_vh.perception.closeup import closeup_of, seen_corners
+from adamo_vh.perception.contact_sheet import MAX_CELLS, contact_sheet
+from adamo_vh.perception.overlay import encoded
+from adamo_vh.perception.reference_points import only
+from adamo_vh.perception.visibility import VisibleObject, visible_objects
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+_WALL_M = 0.05
+"""A place this close to a wall is on it."""
+
+PAPER_REFRESH = frozenset({"Look"})
+"""The paper's refresh rule: a new view at the start and after Look only (Sec. 3.1)."""
+
+
+class LocalActionServer:
+    """Executes actions on an engine. Implements `ActionServer` and `ToolContext`."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        *,
+        perception: PerceptionConfig | None = None,
+        resolution: tuple[int, int] = (1920, 1080),
+        tools: Sequence[Tool] = PAPER_TOOLS,
+        refresh_after: frozenset[str] = PAPER_REFRESH,
+    ) -> None:
+        """Serve one episode.
+
+        Args:
+            engine: The world, already reset.
+            perception: Labeling, grid and picture settings.
+            resolution: Width and height of the frames in pixels.
+            tools: The primitives on offer.
+            refresh_after: Names of the actions that are followed by a new view.
+        """
+        self.engine = engine
+        self._perception = perception or PerceptionConfig()
+        self._resolution = resolution
+        self._tools = {tool.action_type: tool for tool in tools}
+        self._refresh_after = refresh_after
+        self._names = engine.object_names
+        self._seen: set[int] = set()
+        self._shown: list[Frame] = []
+
+    @property
+    def actions(self) -> tuple[type, ...]:
+        """The action types on offer."""
+        return tuple(self._tools)
+
+    @property
+    def seen(self) -> frozenset[int]:
+        """Ids of the objects that were listed in a view so far."""
+        return frozenset(self._seen)
+
+    def tag(self, object_id: int) -> str:
+        """The tag of an object under the labeling in use."""
+        return self._perception.labeling.tag(object_id, self._names[object_id])
+
+    def seen_object(self, tag: str) -> int:
+        """The object that a tag means, if it was in a view before.
+
+        Unknown and unseen tags read the same, so that guessing reveals nothing.
+
+        Raises:
+            InvalidActionError: No object with this tag was seen so far.
+        """
+        object_id = self._perception.labeling.resolve(tag, self._names)
+        if object_id is None or object_id not in self._seen:
+            code = Code.UNKNOWN_TAG if object_id is None else Code.NOT_SEEN
+            raise InvalidActionError(code, f"no object tagged {tag!r} was seen so far.")
+        return object_id
+
+    def observe(self) -> Observation:
+        """The view from where the body stands now; what it lists counts as seen."""
+        percept = self.engine.capture(*self._resolution)
+        raycast = only(self._is_anchor, self.engine.raycast)
+        observation = perceive(percept, raycast, self._perception, self._names)
+        for item in observation.objects:
+            object_id = self._perception.labeling.resolve(item.tag, self._names)
+            if object_id is not None:
+                self._seen.add(object_id)
+        return observation
+
+    def _is_anchor(self, point: Vec3) -> bool:
+        """Whether a place can be a reference point: in the room, not behind its window."""
+        margin_m = _WALL_M if self._perception.points_on_walls else -_WALL_M
+        below = point.z <= self._perception.points_below_m
+        return below and self.engine.scene.is_within_walls(point, margin_m)
+
+    def show_closeup(self, object_id: int) -> bool:
+        """Show an object close up with the next result.
+
+        Returns:
+            False if it is neither in view now nor in the hand.
+        """
+        view, listed = self._in_view()
+        boxes = {item.id: item.box_px for item in listed}
+        if view.body.held == object_id:
+            # One can always look at one's own hand, and feels how large the thing in it is.
+            points = self.engine.state().object(object_id).box.corners()
+        elif object_id in boxes:
+            points = seen_corners(view, boxes[object_id])
+        else:
+            return False
+        self._show(closeup_of(view, object_id, self.tag(object_id), points, self.engine.closeup))
+        return True
+
+    def show_sheet(self) -> tuple[str, ...]:
+        """Show all objects in view on one sheet with the next result; their tags, in order."""
+        view, listed = self._in_view()
+        items = [(item.id, self.tag(item.id), item.box_px) for item in listed[:MAX_CELLS]]
+        if items:
+            self._show(contact_sheet(view, items, self.engine.closeup))
+        return tuple(tag for _, tag, _ in items)
+
+    def _in_view(self) -> tuple[Percept, Sequence[VisibleObject]]:
+        """What the eyes see now, and what of it is large enough to be listed."""
+        percept = self.engine.capture(*self._resolution)
+        return percept, visible_objects(percept, self._perception.min_pixels)
+
+    def _show(self, picture: Image) -> None:
+        config = self._perception
+        self._shown.append(encoded(picture, config.image_format, config.jpeg_quality))
+
+    def execute(self, action: Action) -> ActionResult:
+        """Carry out one action of a type on offer; what the agent did wrong becomes feedback."""
+        self._shown = []
+        try:
+            feedback = self._tools[type(action)].execute(self, action)
+        except InvalidActionError as error:
+            feedback = Feedback.of_error(error)
+        view = None
+        if feedback.outcome is not Outcome.REFUSED:
+            view = self.observe() if action_name(type(action)) in self._refresh_after else None
+        hashed, saved = self.state_hash(), self.save()
+        return ActionResult(feedback, self.agent(), view, hashed, saved, tuple(self._shown))
+
+    def agent(self) -> AgentState:
+        """The body now, in the agent's words."""
+        return agent_state(self.engine.body(), self._perception.labeling, self._names)
+
+    def say(self, text: str) -> None:
+        """Deliver the final answer through the body."""
+        self.engine.say(text)
+
+    def state_hash(self) -> str:
+        """Digest of the world now."""
+        return self.engine.state().hash()
+
+    def save(self) -> str:
+        """World, body and what was seen so far, as text."""
+        saved = _Saved(self.engine.snapshot(), tuple(sorted(self._seen)))
+        return _codec().dump_json(saved).decode()
+
+    def load(self, saved: str) -> None:
+        """Go back to what `save` gave.
+
+        Raises:
+            EngineError: The text is damaged or belongs to another scene.
+        """
+        try:
+            kept = _codec().validate_json(saved)
+        except ValidationError as error:
+            raise EngineError(f"The saved state is damaged: {error.errors()[0]['msg']}") from None
+        self.engine.restore(kept.engine)
+        self._seen = set(kept.seen)
+
+
+@dataclass(frozen=True, slots=True)
+class _Saved:
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(
+        ser_json_bytes="base64", val_json_bytes="base64"
+    )
+
+    engine: bytes
+    seen: tuple[int, ...]
+
+
+@cache
+def _codec() -> TypeAdapter[_Saved]:
+    return TypeAdapter(_Saved)

@@ -1,0 +1,148 @@
+"""Free spots for the oracle to put things: candidates from the world's state, best first.
+
+The state knows objects but no furniture, so a candidate is a good guess that the engine may still
+correct. Each function takes the object to be put down, which keeps the turn that it has now.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adamo_vh.engine import ObjectState, WorldState
+from adamo_vh.geometry import Array, Box, Vec3
+
+BODY_RADIUS_M = 0.25
+REACH_M = 0.85
+"""A little less than the arm's reach, so that the body need not walk."""
+FREE_M = 0.015
+"""A gap to the neighbours beyond which more is no better."""
+NEAR_MAX_M = 0.26
+"""Centre distance to aim at for "near": some room below its limit of 0.30 for corrections."""
+_INWARD_WEIGHT = 0.8
+"""Straight out to the other side weighs a little less than straight over the edge."""
+_FLOOR_GAP_M = 0.05
+_WALL_GAP_M = 0.10
+_NO_DIRECTION_M = 0.02
+
+
+def near_spots(state: WorldState, item: ObjectState, anchor: ObjectState) -> list[Vec3]:
+    """Spots on the anchor's surface, close to it.
+
+    Free ones come first; among these, spots beside the anchor as the body sees it, which are as
+    far from the edge and from the body as the anchor is, and spots towards the other objects of
+    the surface, which are surely not beyond its edge; then the closest.
+    """
+    angles, distances = _polar(np.arange(0.0, 360.0, 5.0), np.linspace(0.04, NEAR_MAX_M, 12))
+    center, surface_z = _plan(anchor.box.center), anchor.box.bottom_z
+    directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    points = center + directions * distances[:, None]
+    gaps = _gaps(points, state, item, surface_z)
+    others = [_plan(o.box.center) for o in state.objects if o.support == anchor.support]
+    facing = np.abs(directions @ _unit(_plan(state.body.position) - center))
+    inward = directions @ _unit(np.mean(others, axis=0) - center)
+    risk = np.round(4 * (facing - _INWARD_WEIGHT * inward))
+    order = np.lexsort((distances, risk, -np.minimum(gaps, FREE_M)))
+    return [_point(points[i], surface_z) for i in order if gaps[i] > 0]
+
+
+def floor_spots(state: WorldState, item: ObjectState, visited: Iterable[Vec3]) -> list[Vec3]:
+    """Spots on open floor within reach: behind the body, away from the furniture that it faces.
+
+    Args:
+        state: The world now.
+        item: The object to be put down.
+        visited: Places where the body has stood, so surely open floor; they come last, because
+            the body may have to walk to them.
+    """
+    clear_m = BODY_RADIUS_M + item.box.radius_m + _WALL_GAP_M
+    turns, distances = _polar(np.arange(0.0, 121.0, 15.0), np.arange(clear_m, REACH_M, 0.08))
+    turns, distances = np.concatenate([turns, -turns]), np.tile(distances, 2)
+    angles = state.body.heading_rad + math.pi + turns
+    here = _plan(state.body.position)
+    behind = here + np.stack([np.cos(angles), np.sin(angles)], axis=1) * distances[:, None]
+    behind = behind[np.lexsort((distances, np.abs(turns)))]
+    places = [_plan(p) for p in visited if p.horizontal_distance(state.body.position) > clear_m]
+    points = np.concatenate([behind, np.reshape(places, (-1, 2))])
+    free = _gaps(points, state, item, 0.0) > _FLOOR_GAP_M
+    return [_point(p, 0.0) for p in points[free & _inside(points, state, item)]]
+
+
+def area_spots(state: WorldState, item: ObjectState, kind: str) -> list[Vec3]:
+    """Spots in the floor areas of a kind: the nearest area first, from its centre outwards."""
+    here, spots = _plan(state.body.position), []
+    middles = {
+        a: np.array([(a.x_min + a.x_max) / 2, (a.y_min + a.y_max) / 2])
+        for a in state.scene.areas
+        if a.kind == kind
+    }
+    for area, middle in sorted(
+        middles.items(), key=lambda pair: float(np.hypot(*(pair[1] - here)))
+    ):
+        steps = np.linspace(-0.4, 0.4, 5)
+        half = np.array([area.x_max - area.x_min, area.y_max - area.y_min])
+        grid = np.array([(x, y) for x in steps for y in steps])
+        points = middle + grid[np.argsort(np.hypot(*grid.T), kind="stable")] * half
+        free = _gaps(points, state, item, 0.0) > _FLOOR_GAP_M
+        spots += [_point(p, 0.0) for p in points[free & _inside(points, state, item)]]
+    return spots
+
+
+def _gaps(points: Array, state: WorldState, item: ObjectState, surface_z: float) -> Array:
+    """Free distance (N,) in metres around the item with its centre at each point (N, 2).
+
+    Separating axes of both headings: positive values are lower bounds, negative ones overlap.
+    """
+    gaps = np.full(len(points), np.inf)
+    top_z = surface_z + item.box.top_z - item.box.bottom_z
+    for other in state.objects:
+        box = other.box
+        if other.id == item.id or other.held or box.bottom_z > top_z or box.top_z < surface_z:
+            continue
+        axes = np.concatenate([_heading_axes(item.box), _heading_axes(box)])
+        offset = np.abs((points - _plan(box.center)) @ axes.T)
+        apart = offset - _half_extent(item.box, axes) - _half_extent(box, axes)
+        gaps = np.minimum(gaps, apart.max(axis=1))
+    return gaps
+
+
+def _heading_axes(box: Box) -> Array:
+    """Unit vectors (2, 2) in plan along and across a box's heading."""
+    cos, sin = math.cos(box.orientation.yaw_rad), math.sin(box.orientation.yaw_rad)
+    return np.array([[cos, sin], [-sin, cos]])
+
+
+def _half_extent(box: Box, axes: Array) -> Array:
+    """How far (N,) a box reaches from its centre along axes (N, 2) in plan, metres."""
+    return np.asarray(np.abs((box.corners()[:, :2] - _plan(box.center)) @ axes.T).max(axis=0))
+
+
+def _inside(points: Array, state: WorldState, item: ObjectState) -> NDArray[np.bool_]:
+    """Which points (N, 2) keep the item off the walls; (N,) bool."""
+    scene, margin = state.scene, item.box.radius_m + _WALL_GAP_M
+    low = np.array([scene.x_min, scene.y_min]) + margin
+    high = np.array([scene.x_max, scene.y_max]) - margin
+    return np.asarray(((points >= low) & (points <= high)).all(axis=1))
+
+
+def _polar(degrees: Array, distances_m: Array) -> tuple[Array, Array]:
+    """All pairs of angle (radians) and distance, each (N,)."""
+    angles, distances = np.meshgrid(np.radians(degrees), distances_m, indexing="ij")
+    return angles.ravel(), distances.ravel()
+
+
+def _unit(vector: Array) -> Array:
+    """The vector (2,) at length 1; zero if it is too short to have a direction."""
+    length = float(np.hypot(*vector))
+    return vector / length if length > _NO_DIRECTION_M else np.zeros(2)
+
+
+def _plan(point: Vec3) -> Array:
+    return point.array()[:2]
+
+
+def _point(plan: Array, z: float) -> Vec3:
+    return Vec3(float(plan[0]), float(plan[1]), z).rounded(3)

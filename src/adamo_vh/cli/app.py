@@ -1,0 +1,293 @@
+"""The commands of `adamo-vh`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    help="Give a vision-language model a body in a 3D room, and measure why it succeeds or fails.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+tasks_app = typer.Typer(help="The benchmark's tasks.", invoke_without_command=True)
+app.add_typer(tasks_app, name="tasks")
+scenes_app = typer.Typer(help="The scenes, built-in and own.", invoke_without_command=True)
+app.add_typer(scenes_app, name="scenes")
+models_app = typer.Typer(help="The models.", no_args_is_help=True)
+app.add_typer(models_app, name="models")
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]
+Figure = Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")]
+Labeling = Annotated[str, typer.Option(help="sem or opaq.")]
+Model = Annotated[
+    str,
+    typer.Option(
+        help="baseline, random, scripted:FILE.json, replay:RUN_DIR, cassette:RUN_DIR, "
+        "openai:NAME, openai:NAME@URL, anthropic:NAME, google:NAME, ..."
+    ),
+]
+ToolCalls = Annotated[
+    str, typer.Option(help="How a remote model gives its calls: auto, native, schema or react.")
+]
+Profile = Annotated[str, typer.Option(help="How it is spoken to: paper, paper-exact or lean.")]
+Switch = Annotated[
+    list[str] | None,
+    typer.Option(help="One switch of the profile, e.g. plan=1; may be repeated."),
+]
+Record = Annotated[
+    bool, typer.Option("--record", help="Keep every request and reply as a cassette.")
+]
+RunFolder = Annotated[
+    Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
+]
+
+
+@app.command()
+def run(
+    instruction: Annotated[
+        str | None, typer.Argument(help="What the agent is told.", show_default=False)
+    ] = None,
+    task: Annotated[str | None, typer.Option(help="A benchmark task instead: T1 to T15.")] = None,
+    scene: Scene = "s1",
+    figure: Figure = "mara",
+    labeling: Labeling = "sem",
+    model: Model = "baseline",
+    tool_calls: ToolCalls = "auto",
+    profile: Profile = "paper",
+    switch: Switch = None,
+    seed: Annotated[int, typer.Option(help="Seed of the episode.")] = 0,
+    k: Annotated[int, typer.Option(help="Steps in the short-term memory.")] = 50,
+    grid: Annotated[int, typer.Option(help="Reference points along a side.")] = 6,
+    resolution: Annotated[str, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = "1920x1080",
+    text: Annotated[str, typer.Option(help="Symbolic text: full or paper.")] = "full",
+    max_steps: Annotated[int, typer.Option(help="Step cap.")] = 60,
+    budget: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A cap: tokens=50000, usd=0.5, calls=20 or seconds=300; may be repeated."
+        ),
+    ] = None,
+    record: Record = False,
+    out: RunFolder = None,
+    resume: Annotated[
+        Path | None, typer.Option(help="Go on with an interrupted run; takes no other setting.")
+    ] = None,
+    video: Annotated[
+        Path | None, typer.Option(help="Film the episode: FILE.webm (VP8) or FILE.avi.")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Run one episode: an instruction in plain words, or a task of the benchmark."""
+    from adamo_vh.cli.episode import resume_and_show, run_and_show
+    from adamo_vh.cli.settings import pairs, read_budget
+
+    if resume is not None:
+        resume_and_show(resume, as_json=json)
+        return
+    run_and_show(
+        instruction,
+        as_json=json,
+        out=out,
+        task=task,
+        scene=scene,
+        figure=figure,
+        labeling=labeling,
+        model=model,
+        tool_calls=tool_calls,
+        profile=profile,
+        switches=pairs(switch, "switch"),
+        budget=read_budget(pairs(budget, "budget")),
+        record=record,
+        seed=seed,
+        k=k,
+        grid=grid,
+        resolution=resolution,
+        text_form=text,
+        max_steps=max_steps,
+        video=video,
+    )
+
+
+@app.command()
+def chat(
+    scene: Scene = "s1",
+    figure: Figure = "mara",
+    labeling: Labeling = "sem",
+    model: Model = "baseline",
+    tool_calls: ToolCalls = "auto",
+    profile: Profile = "lean",
+    switch: Switch = None,
+    budget: Annotated[
+        list[str] | None,
+        typer.Option(help="A cap on the whole conversation, e.g. usd=0.5; may be repeated."),
+    ] = None,
+    out: RunFolder = None,
+    resume: Annotated[
+        Path | None, typer.Option(help="Go on with a recorded conversation or episode.")
+    ] = None,
+    record: Record = False,
+) -> None:
+    """Talk with the agent: one instruction after another, in the same world, remembered."""
+    from adamo_vh.cli.chat import talk
+    from adamo_vh.cli.settings import pairs, read_budget
+
+    talk(
+        resume=resume,
+        out=out,
+        record=record,
+        scene=scene,
+        figure=figure,
+        labeling=labeling,
+        model=model,
+        tool_calls=tool_calls,
+        profile=profile,
+        switches=pairs(switch, "switch"),
+        budget=read_budget(pairs(budget, "budget")),
+    )
+
+
+@app.command()
+def replay(
+    run_dir: Annotated[Path, typer.Argument(help="A run folder.")],
+    start: Annotated[int, typer.Option("--from", help="Begin after this many steps.")] = 0,
+    json: Json = False,
+) -> None:
+    """Execute a recorded episode again, without its model, and verify every state hash."""
+    from adamo_vh.cli.episode import replay_and_show
+
+    replay_and_show(run_dir, start, as_json=json)
+
+
+@app.command()
+def report(run_dir: Annotated[Path, typer.Argument(help="A run folder.")]) -> None:
+    """Write the page of a recorded episode again."""
+    from adamo_vh.benchmark.page import write_page
+
+    typer.echo(write_page(run_dir))
+
+
+@tasks_app.callback()
+def tasks(context: typer.Context, json: Json = False) -> None:
+    """List the tasks with their C-D levels."""
+    if context.invoked_subcommand is None:
+        from adamo_vh.cli.tasks import list_tasks
+
+        list_tasks(as_json=json)
+
+
+@tasks_app.command("verify")
+def tasks_verify(
+    scene: Annotated[str | None, typer.Option(help="One scene; all by default.")] = None,
+    json: Json = False,
+) -> None:
+    """Prove that the oracle solves every task and that doing nothing solves none."""
+    from adamo_vh.cli.tasks import verify
+
+    verify(scene, as_json=json)
+
+
+@scenes_app.callback()
+def scenes(context: typer.Context, json: Json = False) -> None:
+    """List the scenes that come with the package."""
+    if context.invoked_subcommand is None:
+        from adamo_vh.cli.scenes import list_scenes
+
+        list_scenes(as_json=json)
+
+
+@scenes_app.command("check")
+def scenes_check(
+    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the pictures; scene-NAME by default.")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Say what is wrong with a scene, and draw it from above and from the start."""
+    from adamo_vh.cli.scenes import check
+
+    check(file, out, as_json=json)
+
+
+@scenes_app.command("show")
+def scenes_show(
+    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the pictures; scene-NAME by default.")
+    ] = None,
+) -> None:
+    """Draw a scene from above, from the start and from each corner."""
+    from adamo_vh.cli.scenes import show
+
+    show(file, out)
+
+
+@models_app.command("check")
+def models_check(
+    uri: Annotated[str, typer.Argument(help="The model, as for --model of run.")],
+    refresh: Annotated[bool, typer.Option("--refresh", help="Ask it again.")] = False,
+    json: Json = False,
+) -> None:
+    """Ask a model a few small questions: is it there, does it see, does it call tools?"""
+    from adamo_vh.cli.models import check
+
+    check(uri, refresh=refresh, as_json=json)
+
+
+@app.command()
+def doctor(json: Json = False) -> None:
+    """Check this machine: graphics, cache, keys, versions; every problem comes with its fix."""
+    from adamo_vh.cli.doctor import examine
+
+    examine(as_json=json)
+
+
+@app.command("figure")
+def export_figure(
+    file: Annotated[Path, typer.Argument(help="FILE.glb to write.")],
+    who: Annotated[str, typer.Option(help="mara, jonas, amina or ken.")] = "mara",
+) -> None:
+    """Export the virtual human as a skinned GLB with the clips walk, reach and idle."""
+    from adamo_vh.cli.figure import export
+
+    export(file, who)
+
+
+@app.command("serve-model")
+def serve_model(
+    model: Annotated[
+        str, typer.Argument(help="baseline, random, scripted:FILE.json or cassette:DIR.")
+    ] = "baseline",
+    port: Annotated[int, typer.Option(help="Port; 0 for a free one.")] = 8010,
+    host: Annotated[str, typer.Option(help="A loopback address; no other is served.")] = (
+        "127.0.0.1"
+    ),
+    tools: Annotated[
+        bool,
+        typer.Option(
+            "--tools/--no-tools",
+            help="Without, the model has no tool calling: it writes JSON steps if the request "
+            "brings their schema, else Thought, Action and Action Input as text.",
+        ),
+    ] = True,
+    faults: Annotated[
+        Path | None,
+        typer.Option(
+            help="TOML file of what goes wrong on purpose. Each fault table has a what (error with "
+            "status and retry_after_s, error_in_200, refused_parameter with parameter, hang or "
+            "slow with seconds, reset, half_body, bad_json, empty_reply, unknown_tool, "
+            "wrong_arguments, broken_arguments, two_calls, leaked_call with style) and one of "
+            "every (every Nth request), requests (a list of numbers) and probability. Example: "
+            "docs/serve-model.md."
+        ),
+    ] = None,
+) -> None:
+    """Serve a local model as an OpenAI-compatible endpoint, for any client on this machine."""
+    from adamo_vh.cli.serve_model import serve
+
+    serve(model, host, port, faults, tools=tools)

@@ -1,0 +1,108 @@
+"""`adamo-vh doctor`: what works on this machine, and how to fix what does not."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+
+import typer
+from rich.console import Console
+
+from adamo_vh.errors import AdamoError
+
+_KEYS = ("OPENAI_API_KEY", "ANTHROPIC_API_KEY", "GOOGLE_API_KEY", "OPENROUTER_API_KEY")
+_PACKAGES = ("adamo-vh", "mujoco", "numpy", "pillow", "opencv-python-headless", "pydantic-ai-slim")
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One check."""
+
+    check: str
+    ok: bool
+    found: str
+    fix: str = ""
+
+
+def examine(*, as_json: bool) -> None:
+    """Run every check; exit 1 if one fails."""
+    findings = []
+    console = Console()
+    for finding in _findings():
+        findings.append(finding)
+        if not as_json:
+            mark = "[green]ok  [/green]" if finding.ok else "[red]FAIL[/red]"
+            console.print(f"{mark} [bold]{finding.check}[/bold]", end=" ")
+            console.print(finding.found, markup=False, highlight=False, soft_wrap=True)
+            if finding.fix:
+                console.print(f"     fix: {finding.fix}", markup=False, highlight=False)
+    if as_json:
+        typer.echo(json.dumps({"findings": [asdict(f) for f in findings]}))
+    if not all(finding.ok for finding in findings):
+        raise typer.Exit(1)
+
+
+def _findings() -> Iterator[Finding]:
+    yield Finding("versions", True, _versions())
+    yield _guarded("cache", _cache, "set ADAMO_VH_CACHE_DIR to a folder that can be written")
+    yield _guarded("graphics", _graphics, "apt-get install libegl1 libopengl0 libgl1-mesa-dri")
+    yield _guarded("test frame", _test_frame, "see the line above; then run adamo-vh doctor again")
+    set_keys = [key for key in _KEYS if os.environ.get(key)]
+    yield Finding("keys", True, f"set: {', '.join(set_keys) or 'none (the baseline needs none)'}")
+
+
+def _guarded(check: str, examine_it: Callable[[], str], fix: str) -> Finding:
+    try:
+        return Finding(check, True, examine_it())
+    except (AdamoError, OSError, ImportError) as error:
+        return Finding(check, False, str(error), fix)
+
+
+def _versions() -> str:
+    packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
+    return f"Python {platform.python_version()} on {sys.platform}; {packages}"
+
+
+def _cache() -> str:
+    from adamo_vh.runtime.assets.bake import cache_file
+
+    folder = cache_file("key").parent
+    folder.mkdir(parents=True, exist_ok=True)
+    probe = folder / f".probe-{os.getpid()}"
+    probe.write_bytes(b"")
+    probe.unlink()
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    megabytes = sum(path.stat().st_size for path in files) / 1e6
+    return f"{folder}: {len(files)} files, {megabytes:.1f} MB"
+
+
+def _graphics() -> str:
+    from adamo_vh.runtime.rendering import open_gl
+
+    context = open_gl(64, 64)
+    context.make_current()
+    name = type(context).__module__.rpartition(".")[2]
+    context.free()
+    return f"off-screen OpenGL through {name}"
+
+
+def _test_frame() -> str:
+    from adamo_vh.errors import RenderingError
+    from adamo_vh.runtime.builtin import BuiltinEngine
+
+    engine = BuiltinEngine("s1")
+    engine.capture(640, 360)
+    engine.stage.forget()
+    started = time.perf_counter()
+    percept = engine.capture(640, 360)
+    seconds = time.perf_counter() - started
+    engine.close()
+    if percept.rgb.std() < 5 or not percept.objects:
+        raise RenderingError("The test frame of scene s1 is blank.")
+    return f"scene s1, {len(percept.objects)} objects in view, 640x360 in {seconds * 1000:.0f} ms"

@@ -1,0 +1,230 @@
+"""`adamo-vh run` and `adamo-vh replay`: live progress, and the result as text or JSON."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+
+from adamo_vh.benchmark.episode import EpisodeResult, to_json
+from adamo_vh.cli.progress import Progress
+from adamo_vh.cognition.budget import Budget
+from adamo_vh.cognition.forecast import Forecast
+from adamo_vh.cognition.termination import Limits, TerminationReason
+from adamo_vh.cognition.trajectory import Observer
+from adamo_vh.engine import Engine
+from adamo_vh.errors import ConfigError
+
+RUNS = Path("runs")
+
+
+def run_and_show(
+    instruction: str | None,
+    *,
+    as_json: bool,
+    out: Path | None,
+    resolution: str,
+    max_steps: int,
+    video: Path | None,
+    **settings: Any,
+) -> None:
+    """Run an episode and print what happens, or one JSON object at the end."""
+    from adamo_vh.assemble.episode import run_episode
+
+    folder = out or new_run_folder(settings["task"] or instruction or "")
+    with ExitStack() as stack:
+        observers: list[Observer] = [] if as_json else [Progress(Console())]
+        limits = Limits(max_steps=max_steps)
+        if video is not None:
+            settings["engine"] = stack.enter_context(filming(video, settings, observers))
+            # Drawing the film takes minutes that are not the agent's.
+            limits = replace(limits, max_seconds=1e9)
+        result = run_episode(
+            instruction,
+            resolution=parse_resolution(resolution),
+            limits=limits,
+            out=folder,
+            observers=observers,
+            announce=None if as_json else lambda ahead: _announce(ahead, settings["budget"]),
+            **settings,
+        )
+    if out is None:
+        _mark_latest(folder)
+    _show(result, folder, as_json=as_json)
+
+
+def _announce(ahead: Forecast, budget: Budget) -> None:
+    """Say what an episode will take, and whether its budget is enough."""
+    console = Console()
+    console.print("[bold]forecast[/bold]   ", end=" ")
+    console.print(ahead.text(), markup=False, highlight=False, soft_wrap=True)
+    if warning := ahead.warns(budget):
+        console.print(warning, style="yellow", markup=False, highlight=False, soft_wrap=True)
+
+
+@contextmanager
+def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> Iterator[Engine]:
+    """An engine whose episode is filmed; the film is finished at the end."""
+    from adamo_vh.adapters.video import VideoRecorder
+    from adamo_vh.runtime.builtin import BuiltinEngine
+
+    engine = BuiltinEngine(settings["scene"], settings["figure"])
+    recorder = VideoRecorder(path, engine)
+    observers.append(recorder)
+    try:
+        yield engine
+    finally:
+        recorder.close()
+        engine.close()
+
+
+def resume_and_show(folder: Path, *, as_json: bool) -> None:
+    """Go on with an interrupted run."""
+    from adamo_vh.assemble.episode import resume_episode
+
+    progress = () if as_json else (Progress(Console()),)
+    _show(resume_episode(folder, observers=progress), folder, as_json=as_json)
+
+
+def _show(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
+    if as_json:
+        typer.echo(json.dumps(result_json(result)))
+    else:
+        _print_result(Console(), result, folder)
+    if not result.termination.is_scored:
+        raise typer.Exit(1)
+
+
+def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
+    """Replay a run folder and say whether every state came out the same."""
+    from adamo_vh.assemble.replaying import replay_episode
+
+    report = replay_episode(run_dir, start)
+    same = not report.mismatches
+    if as_json:
+        found = {"steps": report.steps, "same": same, "mismatches": report.mismatches}
+        typer.echo(json.dumps({**found, "frames_differ": report.frames_differ}))
+    elif same:
+        frames = (
+            "all frames equal"
+            if not report.frames_differ
+            else (f"{report.frames_differ} frames differ in bytes (another machine or driver)")
+        )
+        typer.echo(f"Same: every state hash equal in {report.steps} steps; {frames}.")
+    else:
+        for line in report.mismatches:
+            typer.echo(f"Different: {line}")
+    if not same:
+        raise typer.Exit(1)
+
+
+def parse_resolution(text: str) -> tuple[int, int]:
+    """WIDTHxHEIGHT as two integers.
+
+    Raises:
+        ConfigError: The text has another form.
+    """
+    match = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text.strip().lower())
+    if match is None:
+        raise ConfigError(f"resolution {text!r}: write WIDTHxHEIGHT, for example 1920x1080.")
+    return int(match[1]), int(match[2])
+
+
+def new_run_folder(what: str) -> Path:
+    """A folder name below runs/ that is not taken."""
+    words = re.sub(r"[^a-z0-9]+", "-", what.lower()).strip("-")[:40].strip("-") or "episode"
+    stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
+    folder = RUNS / f"{stamp}-{words}"
+    number = 2
+    while folder.exists():
+        folder = RUNS / f"{stamp}-{words}-{number}"
+        number += 1
+    return folder
+
+
+def _mark_latest(folder: Path) -> None:
+    """Point runs/latest at the newest run, where the file system allows it."""
+    link = RUNS / "latest"
+    try:
+        link.unlink(missing_ok=True)
+        link.symlink_to(folder.name, target_is_directory=True)
+    except OSError:
+        pass
+
+
+def result_json(result: EpisodeResult) -> dict[str, Any]:
+    """The object that `adamo-vh run --json` prints."""
+    data = to_json(result)
+    keys = (
+        "task instruction scene labeling profile model model_kind seed completion strict "
+        "conditions violations termination why answer steps model_calls calls missing_notes "
+        "unreadable requests usage cost_usd rungs model_s world_s walked_m direct_m run state_hash"
+    )
+    world = [
+        {
+            "id": item.id,
+            "tag": item.tag,
+            "class": item.class_name,
+            "position": [item.position.x, item.position.y, item.position.z],
+            "support": item.support,
+            "held": item.held,
+        }
+        for item in result.world()
+    ]
+    counted = {"tokens": result.tokens, "world": world}
+    return {**{key: data[key] for key in keys.split()}, **counted}
+
+
+def _accounts(result: EpisodeResult) -> str:
+    """What the model took: calls, tokens, money."""
+    usage = result.usage
+    parts = [f"{result.profile} profile, {result.model_calls} calls"]
+    if usage.total_tokens:
+        parts.append(
+            f"{usage.input_tokens} tokens in ({usage.cached_tokens} cached), "
+            f"{usage.output_tokens} out ({usage.reasoning_tokens} reasoning)"
+        )
+        cost = result.cost_usd
+        parts.append("price unknown" if cost is None else f"{cost:.4f} USD")
+    if result.rungs:
+        parts.append(f"calls as {', '.join(result.rungs)}")
+    if result.unreadable:
+        parts.append(f"{result.unreadable} unreadable replies")
+    return "; ".join(parts)
+
+
+def _print_result(console: Console, result: EpisodeResult, folder: Path) -> None:
+    def line(label: str, value: str) -> None:
+        console.print(f"[bold]{label:<11}[/bold]", end=" ")
+        console.print(value, markup=False, highlight=False, soft_wrap=True)
+
+    console.print()
+    broken = result.termination is TerminationReason.BROKEN
+    line("fault" if broken else "answer", result.answer or f"(none: {result.termination})")
+    if result.completion is not None:
+        met = sum(c.satisfied for c in result.conditions)
+        line(
+            "score",
+            f"completion {result.completion:.2f} ({met} of {len(result.conditions)} conditions), "
+            f"strict {result.strict:.0f}",
+        )
+    elif not result.termination.is_scored:
+        line("score", "unscored: the fault is not the agent's")
+    for violation in result.violations:
+        line("", violation)
+    calls = ", ".join(f"{name} {count}" for name, count in result.calls.items()) or "none"
+    line("calls", f"{calls}; {result.termination}")
+    if result.why:
+        line("stopped", result.why)
+    line("model", _accounts(result))
+    line("time", f"model {result.model_s:.1f} s, world {result.world_s:.1f} s")
+    line("walked", f"{result.walked_m:.1f} m, {result.direct_m:.1f} m in straight lines")
+    line("page", str(folder / "episode.html"))

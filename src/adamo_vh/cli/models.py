@@ -1,0 +1,147 @@
+"""`adamo-vh models check`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from datetime import datetime
+
+import typer
+from rich.console import Console
+
+from adamo_vh.assemble.players import create_player
+from adamo_vh.errors import ModelConfigError, ModelError
+from adamo_vh.inference.capabilities import Capabilities, Support, ToolSupport, load_capabilities
+from adamo_vh.inference.model import Rung
+from adamo_vh.inference.registry import create_local_model, probe_and_keep
+
+_SIGHT_FIX = "use a model that sees; without pictures it has the symbolic text alone"
+_OWN_SIGHT_FIX = f"start llama-server with --mmproj FILE; else {_SIGHT_FIX}"
+_TOOLS_FIX = "none is needed, it is asked another way"
+_OWN_TOOLS_FIX = (
+    "start llama-server with --jinja, vLLM with --enable-auto-tool-choice --tool-call-parser NAME; "
+    "if it still makes none, it is asked another way"
+)
+_SCHEMA_FIX = "use a server that knows response_format json_schema: llama-server, vLLM, Ollama"
+
+_SIGHT = {
+    Support.YES: "sees them",
+    Support.NO: "accepted, but not seen: it named other colours than those shown",
+    Support.REFUSED: "the server refuses them",
+    Support.UNTESTED: "not tested: that takes sight and native tool calls",
+}
+_TOOLS = {
+    ToolSupport.NATIVE: "native",
+    ToolSupport.LEAKED: "written into the text, where they are recognised",
+    ToolSupport.NONE: "none came, although a tool was on offer and asked for",
+    ToolSupport.REFUSED: "the server refuses tools",
+}
+_SCHEMA = {
+    Support.YES: "obeyed",
+    Support.NO: "accepted, but not obeyed",
+    Support.REFUSED: "the server refuses it",
+    Support.UNTESTED: "not tested",
+}
+_WAY = {
+    Rung.NATIVE: "native: through the tool calls of its API",
+    Rung.LEAKED: "leaked: with tools on offer, reading its calls from the text",
+    Rung.SCHEMA: "schema: no tools, each answer one JSON step held to a schema",
+    Rung.REACT: "react: no tools, each answer the lines Thought, Action and Action Input",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """One line of the table."""
+
+    mark: str
+    what: str
+    found: str
+    fix: str = ""
+
+
+def check(uri: str, *, refresh: bool, as_json: bool) -> None:
+    """Say what a model can do and how it will be asked; exit 1 if it cannot be reached."""
+    local = create_player(uri) if uri.startswith("replay:") else create_local_model(uri)
+    if local is not None:
+        _show_local(uri, local.kind, as_json=as_json)
+        return
+    known = None if refresh else load_capabilities(uri)
+    try:
+        found = known or probe_and_keep(uri)
+    except ModelConfigError:
+        raise
+    except ModelError as error:
+        _show_unreached(uri, str(error), as_json=as_json)
+        raise typer.Exit(1) from None
+    if as_json:
+        facts = {"reachable": True, "cached": known is not None, **asdict(found)}
+        typer.echo(json.dumps(facts))
+        return
+    _show([*_lines(found)])
+    _show_cost(found, cached=known is not None)
+
+
+def _lines(found: Capabilities) -> Iterator[_Line]:
+    own = "@http" in found.uri
+    yield _Line("ok", "reachable", found.uri)
+    sight_fix = _OWN_SIGHT_FIX if own else _SIGHT_FIX
+    yield _sight("pictures", found.pictures, sight_fix)
+    yield _sight("pictures in results", found.result_pictures)
+    native = found.tools is ToolSupport.NATIVE
+    tools_fix = _OWN_TOOLS_FIX if own else _TOOLS_FIX
+    yield _Line(_mark(native), "tool calls", _TOOLS[found.tools], "" if native else tools_fix)
+    obeyed = found.schema is Support.YES
+    # Only a model without tool calls has use for a schema.
+    fix = _SCHEMA_FIX if found.rung is Rung.REACT else ""
+    yield _Line(_mark(obeyed), "JSON schema", _SCHEMA[found.schema], fix)
+    refused = ", ".join(found.refused)
+    parameters = f"refuses {refused}; requests go without" if refused else "takes all that are sent"
+    yield _Line(_mark(not refused), "parameters", parameters)
+    yield _Line("=>", "asked", _WAY[found.rung])
+
+
+def _sight(what: str, support: Support, fix: str = "") -> _Line:
+    mark = "--" if support is Support.UNTESTED else _mark(support is Support.YES)
+    return _Line(mark, what, _SIGHT[support], fix if mark == "no" else "")
+
+
+def _mark(good: bool) -> str:
+    return "ok" if good else "no"
+
+
+_COLOURS = {"ok": "green", "no": "yellow", "--": "dim", "FAIL": "red", "=>": "bold"}
+
+
+def _show(lines: list[_Line]) -> None:
+    console = Console()
+    for line in lines:
+        colour = _COLOURS[line.mark]
+        console.print(f"[{colour}]{line.mark:<4}[/] [bold]{line.what:<19}[/bold]", end=" ")
+        console.print(line.found, markup=False, highlight=False, soft_wrap=True)
+        if line.fix:
+            console.print(f"     fix: {line.fix}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _show_cost(found: Capabilities, *, cached: bool) -> None:
+    when = datetime.fromisoformat(found.when).strftime("%Y-%m-%d %H:%M UTC")
+    again = "; --refresh asks again" if cached else ""
+    typer.echo(
+        f"     {found.requests} requests, {found.usage.total_tokens} tokens, "
+        f"{found.seconds:.1f} s on {when}{again}"
+    )
+
+
+def _show_unreached(uri: str, error: str, *, as_json: bool) -> None:
+    if as_json:
+        typer.echo(json.dumps({"reachable": False, "uri": uri, "error": error}))
+    else:
+        _show([_Line("FAIL", "reachable", error)])
+
+
+def _show_local(uri: str, kind: str, *, as_json: bool) -> None:
+    if as_json:
+        typer.echo(json.dumps({"reachable": True, "uri": uri, "kind": kind}))
+    else:
+        _show([_Line("ok", "reachable", f"{uri} ({kind}) needs no server: nothing to check")])

@@ -1,0 +1,38 @@
+"""`adamo-vh serve-model`."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from adamo_vh.adapters.model_serving import serve_model
+
+if TYPE_CHECKING:
+    from adamo_vh.adapters.openai_endpoint import Served
+
+
+def serve(model: str, host: str, port: int, faults: Path | None, *, tools: bool) -> None:
+    """Serve a model until it is stopped, with a line for each request.
+
+    Raises:
+        ConfigError: A setting is wrong or the port is taken.
+    """
+    stop = threading.Event()
+    # Set anew because a shell may have told its background jobs to ignore Ctrl+C.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    with serve_model(model, port, host=host, tools=tools, faults=faults, watch=_tell) as served:
+        typer.echo(f"{served.name} at {served.base_url}")
+        typer.echo(f"try    adamo-vh run --task T1 --model {served.uri}")
+        typer.echo("stop   Ctrl+C")
+        stop.wait()
+    typer.echo("stopped")
+
+
+def _tell(served: Served) -> None:
+    status = str(served.status) if served.status else "cut"
+    typer.echo(f"{served.number:5d}  {status:>3}  {served.text}")

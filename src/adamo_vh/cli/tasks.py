@@ -1,0 +1,71 @@
+"""`adamo-vh tasks` and `adamo-vh tasks verify`."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.perception import Labeling
+
+
+def list_tasks(*, as_json: bool) -> None:
+    """Print every task with its C-D level."""
+    if as_json:
+        rows = [
+            {
+                "id": task.id,
+                "prompt": task.prompt,
+                "family": task.family,
+                "units": list(task.units),
+                "printed": asdict(task.printed),
+                "computed": asdict(task.computed),
+                "conditions": [str(condition) for condition in task.conditions],
+            }
+            for task in TASKS
+        ]
+        typer.echo(json.dumps({"tasks": rows}))
+        return
+    table = Table("task", "prompt", "ACT", "REF", "REL", "C-D", "printed", "conditions")
+    for task in TASKS:
+        level = task.computed
+        table.add_row(
+            task.id,
+            task.prompt,
+            str(level.act),
+            str(level.ref),
+            str(level.rel),
+            str(level.total),
+            str(task.printed.total),
+            "; ".join(str(condition) for condition in task.conditions),
+        )
+    Console().print(table)
+
+
+def verify(scene: str | None, *, as_json: bool) -> None:
+    """Play oracle and idle for every task, scene and labeling; exit 1 if a task is unsound."""
+    from adamo_vh.assemble.engines import create_engine
+    from adamo_vh.benchmark.verify import verify_tasks
+    from adamo_vh.runtime.scenes import scene_names
+
+    rows = []
+    for name in [scene] if scene else scene_names():
+        engine = create_engine(name)
+        for labeling in Labeling:
+            for row in verify_tasks(engine, labeling):
+                rows.append(row)
+                if not as_json:
+                    mark = "ok  " if row.is_sound else "FAIL"
+                    typer.echo(
+                        f"{mark} {row.scene} {row.labeling:<4} {row.task:<3} oracle "
+                        f"{row.oracle:.2f} strict {row.oracle_strict:.0f} idle {row.idle:.2f}"
+                    )
+        engine.close()
+    if as_json:
+        typer.echo(json.dumps({"tasks": [asdict(row) for row in rows]}))
+    if not all(row.is_sound for row in rows):
+        raise typer.Exit(1)

@@ -1,0 +1,146 @@
+"""Profiles: how the agent is spoken to and what it may do in a turn, as independent switches.
+
+`paper` is the paper's protocol to the letter (Sec. 3.1). `lean` is ours: the same body and the same
+scores for far fewer tokens. Every switch of `lean` can be turned on or off by itself, on top of
+either, so that each can be ablated. Results of different profiles are always reported apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from enum import StrEnum
+from typing import Any
+
+from adamo_vh.errors import ConfigError
+
+_ON, _OFF = ("on", "true", "yes", "1"), ("off", "false", "no", "0")
+
+
+class StateText(StrEnum):
+    """Where the symbolic state stands in the prompt."""
+
+    FIRST = "first"
+    """The whole state, always the latest, right behind the instructions: the paper's place. It
+    changes with every action, so no provider cache can hold what comes after it."""
+    LAST = "last"
+    """The whole state, always the latest, at the end: the prompt before it only grows."""
+    CHANGES = "changes"
+    """With each result only what changed; all that was said before stays where it was."""
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """The switches; the defaults are the paper's protocol."""
+
+    name: str = "paper"
+    """What the switches started from."""
+    state: StateText = StateText.FIRST
+    terse: bool = False
+    """The same facts in fewer words: short lines, no boxes in the text (they are drawn), no
+    reference points on walls and above the hand's reach, tools with names and types alone."""
+    fresh_view: bool = False
+    """A new view after every turn that changed what is seen; otherwise after Look only."""
+    pictures: int = 0
+    """Only the pictures of the last so many views stay in the prompt; 0 keeps all within k."""
+    pictures_in_results: bool = False
+    """Views come inside the tool's result; otherwise as human messages after it."""
+    closeups: bool = False
+    """Offer Inspect (one object close up) and Survey (all in view on one sheet)."""
+    note_argument: bool = False
+    """The reasoning note is a required argument of every call, with a confidence; otherwise it is
+    the text before the call."""
+    min_confidence: float = 0.0
+    """A Pick with less confidence than this shows the object close up first; needs the note
+    argument and close-ups. 0 switches it off."""
+    finish_check: bool = False
+    """The episode is ended by a tool that asks what is verified and what was not looked at."""
+    plan: int = 1
+    """Calls that are executed in one turn, until the first surprise."""
+    exact_sampling: bool = False
+    """Send temperature and top-p both, as the paper did, even where a provider refuses them."""
+
+    def __post_init__(self) -> None:
+        """Refuse switches that make no sense together."""
+        if self.pictures < 0 or self.plan < 1 or not 0 <= self.min_confidence <= 1:
+            raise ConfigError(
+                "pictures is at least 0, plan at least 1, and min_confidence from 0 to 1."
+            )
+        if self.min_confidence and not (self.note_argument and self.closeups):
+            raise ConfigError(
+                "min_confidence needs note_argument (which asks for a confidence) and closeups: "
+                "turn them on, or set min_confidence=0."
+            )
+
+    def __str__(self) -> str:
+        """The name, and what differs from what the name stands for."""
+        start = PROFILES.get(self.name, PAPER)
+        changed = ", ".join(
+            f"{field.name}={_spelled(getattr(self, field.name))}"
+            for field in fields(self)
+            if field.name != "name" and getattr(self, field.name) != getattr(start, field.name)
+        )
+        return f"{self.name} ({changed})" if changed else self.name
+
+
+PAPER = Profile()
+PROFILES: Mapping[str, Profile] = {
+    "paper": PAPER,
+    "paper-exact": Profile("paper-exact", exact_sampling=True),
+    "lean": Profile(
+        "lean",
+        state=StateText.CHANGES,
+        terse=True,
+        fresh_view=True,
+        pictures=1,
+        pictures_in_results=True,
+        closeups=True,
+        note_argument=True,
+        min_confidence=0.5,
+        finish_check=True,
+        plan=12,
+    ),
+}
+SWITCHES = tuple(field.name for field in fields(Profile) if field.name != "name")
+
+
+def profile(name: str, switches: Mapping[str, Any] | None = None) -> Profile:
+    """A profile by its name, with some switches set otherwise.
+
+    Args:
+        name: "paper", "paper-exact" or "lean".
+        switches: New values by switch; texts are read ("on", "off", numbers, "changes").
+
+    Raises:
+        ConfigError: The name, a switch or a value is unknown.
+    """
+    if name.lower() not in PROFILES:
+        raise ConfigError(f"There is no profile {name!r}. Use one of {', '.join(PROFILES)}.")
+    start = PROFILES[name.lower()]
+    chosen = {key.replace("-", "_"): value for key, value in (switches or {}).items()}
+    if unknown := sorted(chosen.keys() - set(SWITCHES)):
+        raise ConfigError(f"There is no switch {unknown[0]!r}. Switches: {', '.join(SWITCHES)}.")
+    values = {key: _read(key, value, getattr(start, key)) for key, value in chosen.items()}
+    # Without a note there is no confidence, and without close-ups nothing that it could lead to.
+    if not (values.get("note_argument", True) and values.get("closeups", True)):
+        values.setdefault("min_confidence", 0.0)
+    return replace(start, **values)
+
+
+def _read(switch: str, value: Any, usual: Any) -> Any:
+    text = str(value).strip().lower()
+    try:
+        if isinstance(usual, bool):
+            return {**dict.fromkeys(_ON, True), **dict.fromkeys(_OFF, False)}[text]
+        return type(usual)(text)
+    except (KeyError, ValueError):
+        offer = "on or off" if isinstance(usual, bool) else "a number"
+        if isinstance(usual, StateText):
+            offer = ", ".join(StateText)
+        raise ConfigError(f"Switch {switch}: {value!r} is not understood; use {offer}.") from None
+
+
+def _spelled(value: Any) -> str:
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return str(value)

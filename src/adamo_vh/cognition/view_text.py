@@ -1,0 +1,105 @@
+"""The symbolic state as text: whole, or as what changed since it was last told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from adamo_vh.cognition.prompts import render
+from adamo_vh.geometry import Vec3
+from adamo_vh.observation import AgentState, Observation, ObservedObject, ReferencePoint
+from adamo_vh.perception import TextForm, agent_lines, object_lines, point_lines
+from adamo_vh.perception.symbolic import NONE
+
+
+@dataclass(frozen=True, slots=True)
+class Wording:
+    """Which fields the text has, and how many words it makes of them."""
+
+    form: TextForm = TextForm.FULL
+    terse: bool = False
+
+    def objects(self, objects: Iterable[ObservedObject]) -> str:
+        """One line for each object, with its box in the frame where the form has it."""
+        if not self.terse:
+            return object_lines(objects, self.form)
+        return "\n".join(map(self.lasting, objects)) or NONE
+
+    def lasting(self, item: ObservedObject) -> str:
+        """Where an object is: true also when it is out of view."""
+        if not self.terse:
+            return object_lines([item], TextForm.PAPER)
+        return f"- {item.tag} {_short(item.position)}, {item.volume_m3 * 1e6:.0f} cm3"
+
+    def in_view(self, item: ObservedObject) -> str:
+        """An object as it is seen now."""
+        if self.terse:
+            return item.tag.rpartition("_")[2]
+        if self.form is TextForm.PAPER:
+            return item.tag
+        return f"{item.tag} [{', '.join(map(str, item.box_px))}]"
+
+    def points(self, points: Iterable[ReferencePoint]) -> str:
+        """One line for each reference point; all on one line where words are few."""
+        if not self.terse:
+            return point_lines(points)
+        return ", ".join(f"{point.tag} {_short(point.position)}" for point in points) or NONE
+
+    def agent(self, agent: AgentState) -> str:
+        """The body now."""
+        return agent_lines(agent, self.form)
+
+
+def whole_state(view: Observation, agent: AgentState, wording: Wording) -> str:
+    """All of it: objects and points of a view, and the body now."""
+    return render(
+        "symbolic_state",
+        objects=wording.objects(view.objects),
+        points=wording.points(view.points),
+        agent=wording.agent(agent),
+    )
+
+
+@dataclass
+class Told:
+    """What a reader of the conversation knows so far: each thing is said once, until it changes."""
+
+    wording: Wording
+    _objects: dict[str, str] = field(default_factory=dict)
+    _agent: str = ""
+
+    def changes(self, view: Observation | None, agent: AgentState) -> str:
+        """Say what a view and the body's state add to what was told; empty if nothing."""
+        parts = []
+        if view is not None:
+            # What is in the hand moves with it and needs no word.
+            resting = [item for item in view.objects if item.tag != agent.held]
+            lines = {item.tag: self.wording.lasting(item) for item in resting}
+            new = [line for tag, line in lines.items() if tag not in self._objects]
+            moved = [line for tag, line in lines.items() if self._objects.get(tag, line) != line]
+            self._objects.update(lines)
+            parts += ["\n".join(["New in view:", *new])] if new else []
+            parts += ["\n".join(["Moved:", *moved])] if moved else []
+        you = ", ".join(_items(self.wording.agent(agent)))
+        if you != self._agent:
+            self._agent = you
+            parts.append(f"You: {you}")
+        return "\n".join(parts)
+
+
+def view_now(view: Observation, wording: Wording) -> str:
+    """What belongs to a picture and is dropped with it: what is in view, and reference points."""
+    tags = ", ".join(map(wording.in_view, view.objects)) or NONE
+    points = wording.points(view.points)
+    if not wording.terse:
+        points = ", ".join(item.replace(":", "", 1) for item in _items(points)) or NONE
+    return f"# The view now\nIn view: {tags}\nReference points: {points}"
+
+
+def _short(point: Vec3) -> str:
+    p = point.rounded(2)
+    return f"({p.x:.2f},{p.y:.2f},{p.z:.2f})"
+
+
+def _items(lines: str) -> list[str]:
+    return [line.removeprefix("- ") for line in lines.splitlines() if line.startswith("- ")]

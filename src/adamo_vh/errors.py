@@ -1,0 +1,83 @@
+"""Every exception that ADAMO raises on purpose, as one tree.
+
+::
+
+    AdamoError
+    ├── ConfigError            a setting or argument of the caller is wrong; nothing was started
+    ├── SceneError             a scene file is wrong: names the file, the field and the fix
+    ├── InvalidActionError     a tool call is no valid action; carries the feedback for the model
+    ├── EngineError            the world itself failed
+    │   └── RenderingError     no OpenGL to draw with
+    ├── ModelError             the model could not answer; the episode is unscored
+    │   ├── ModelConfigError   unknown model, missing extra, missing key: no retry helps
+    │   ├── ProviderError      the provider failed after all retries
+    │   │   └── RefusedError   the provider refuses the request as it is: no waiting helps
+    │   └── CassetteError      the recorded calls do not fit what is asked now
+    └── RecordError            a run folder is missing, damaged or of another version
+        └── ReplayError        a replay left the recorded path
+
+What a *model* does wrong (an unknown tool, an unseen tag) is never an exception above the agent:
+it becomes feedback and the loop goes on.
+"""
+
+from __future__ import annotations
+
+
+class AdamoError(Exception):
+    """Base of all errors; the message names the fix."""
+
+
+class ConfigError(AdamoError):
+    """A setting or argument of the caller is wrong."""
+
+
+class SceneError(AdamoError):
+    """A scene file is wrong."""
+
+
+class InvalidActionError(AdamoError):
+    """A tool call is not a valid action.
+
+    Attributes:
+        code: Typed reason, one of `adamo_vh.action.Code`.
+    """
+
+    def __init__(self, code: str, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+class EngineError(AdamoError):
+    """The world itself failed; the episode is unscored."""
+
+
+class RenderingError(EngineError):
+    """No OpenGL implementation could be used."""
+
+
+class ModelError(AdamoError):
+    """The model could not answer; the episode is unscored."""
+
+
+class ModelConfigError(ModelError):
+    """Unknown model, missing extra or missing key; no retry helps."""
+
+
+class ProviderError(ModelError):
+    """The provider failed after all retries."""
+
+
+class RefusedError(ProviderError):
+    """The provider refuses the request as it is; unlike a fault, no waiting helps."""
+
+
+class CassetteError(ModelError):
+    """The recorded calls do not fit what is asked now: names the call and shows the difference."""
+
+
+class RecordError(AdamoError):
+    """A run folder is missing, damaged or of another version."""
+
+
+class ReplayError(RecordError):
+    """A replay left the recorded path."""

@@ -1,0 +1,79 @@
+"""Arguments of a tool call: from a model's own text to a JSON object, and back onto the wire."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, NoReturn
+
+from adamo_vh.inference.messages import ToolCall
+
+UNREADABLE = "unreadable_arguments"
+"""Key under which a model is shown arguments of its own that were no JSON object."""
+
+_DEEPEST = 50
+"""No tool takes arguments that are nested deeper, and records cannot hold what is much deeper."""
+
+
+def read_arguments(raw: str) -> dict[str, Any] | None:
+    """Read the arguments as a model wrote them.
+
+    Args:
+        raw: JSON text. An empty one counts as no arguments: some servers send it for ``{}``.
+
+    Returns:
+        The arguments, or None if they are not one strict JSON object (NaN and Infinity are not
+        JSON), or one that is nested beyond reason.
+    """
+    try:
+        value = json.loads(raw, parse_constant=_refuse) if raw.strip() else {}
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(value, dict) or _is_deeper(value, _DEEPEST):
+        return None
+    return _encodable(value)
+
+
+def wire_arguments(call: ToolCall) -> dict[str, Any]:
+    """The arguments of a call for its way back to a server, which is always valid JSON.
+
+    Servers refuse a conversation, now and ever after, in which a call carries anything but a JSON
+    object; so an unreadable text is shown to the model as a string in an object.
+    """
+    if call.arguments is not None:
+        readable = read_arguments(dump_arguments(call.arguments))
+        if readable is not None:
+            return readable
+    raw = call.raw or dump_arguments(call.arguments or {})
+    return {UNREADABLE: encodable_text(raw)}
+
+
+def dump_arguments(arguments: Mapping[str, Any]) -> str:
+    """Arguments as JSON text."""
+    return json.dumps(dict(arguments), ensure_ascii=False)
+
+
+def encodable_text(text: str) -> str:
+    """The text without lone surrogates, which JSON can spell and UTF-8 cannot."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def _is_deeper(value: Any, levels: int) -> bool:
+    if not isinstance(value, dict | list):
+        return False
+    inner = value.values() if isinstance(value, dict) else value
+    return levels == 0 or any(_is_deeper(item, levels - 1) for item in inner)
+
+
+def _encodable(value: dict[str, Any]) -> dict[str, Any] | None:
+    """The object without lone surrogates; None if a number in it overflows to infinity."""
+    try:
+        text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    except ValueError:
+        return None
+    cleaned: dict[str, Any] = json.loads(encodable_text(text))
+    return cleaned
+
+
+def _refuse(constant: str) -> NoReturn:
+    raise ValueError(f"{constant} is not JSON")

@@ -1,0 +1,163 @@
+"""How well a thing fits a description: from its tag, its volume, its pixels and usual knowledge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline.classes import Beliefs, classify, likeliest
+from adamo_vh.inference.baseline.goals import Description, Relation
+from adamo_vh.inference.baseline.memory import Thing
+from adamo_vh.inference.baseline.prototypes import Prototype, class_of, prototypes, size_of
+from adamo_vh.inference.baseline.sight import Sight
+
+_NEAR_SOURCE_M = 0.6
+_FLOOR_BOTTOM_M = 0.1
+_A_WORD = 3
+"""Letters from which what was read is a word."""
+
+
+def degree(
+    description: Description,
+    thing: Thing,
+    sight: Sight | None,
+    others: Sequence[Thing],
+    beliefs: Beliefs | None = None,
+) -> float:
+    """How well a thing fits a description.
+
+    Args:
+        description: What is sought; superlatives are left to the caller.
+        thing: The candidate.
+        sight: Its pixels, if looked at.
+        others: All things known, for "from the floor" or "standing near the plate".
+        beliefs: What it may be, if that was found out already.
+
+    Returns:
+        0 (does not fit) to 1 (fits in every respect).
+    """
+    if description.ids:
+        bare = thing.tag.lower().rsplit("_", 1)[-1]
+        return 1.0 if {bare, thing.tag.lower()} & set(description.ids) else 0.0
+    beliefs = beliefs or classify(thing.tag, thing.volume_cm3, sight)
+    factors = _factors(description, thing, beliefs, sight)
+    if description.source:
+        factors.append(_from_there(description.source, thing, others))
+    if not factors:
+        return 1.0
+    if min(factors) < 0.02:
+        return 0.0
+    return math.exp(sum(math.log(f) for f in factors) / len(factors))
+
+
+def _factors(
+    description: Description, thing: Thing, beliefs: Beliefs, sight: Sight | None
+) -> list[float]:
+    factors = []
+    if description.classes:
+        fits = [beliefs.get(n, 0.0) * 0.85**i for i, n in enumerate(description.classes)]
+        factors.append(max(fits))
+        if class_of(thing.tag):
+            # The noun has settled it; looks only tell things of one class apart.
+            soft = _looks(description, beliefs, sight)
+            return factors + [0.5 + f / 2 for f in soft]
+    return factors + _looks(description, beliefs, sight)
+
+
+def _looks(description: Description, beliefs: Beliefs, sight: Sight | None) -> list[float]:
+    factors = [_colour(colour, beliefs, sight) for colour in description.colours]
+    factors += [
+        _white(beliefs, sight) if colour == "white" else _part_colour(colour, beliefs, sight)
+        for colour in description.part_colours
+    ]
+    factors += [_shape(shape, beliefs, sight) for shape in description.shapes]
+    if description.transparent:
+        factors.append(_expect(beliefs, lambda p: 0.95 if p.transparent else 0.02))
+    if description.label:
+        factors.append(_label(beliefs, sight))
+    return factors
+
+
+def _colour(colour: str, beliefs: Beliefs, sight: Sight | None) -> float:
+    usual = _expect(beliefs, lambda p: dict(p.colours).get(colour, 0.02))
+    if sight is None or sight.pixels < 30:
+        return usual
+    share = sight.share(colour)
+    if colour in ("grey", "black", "white"):
+        share = max(0.0, share - 0.25)  # shadows and highlights are on everything
+    return _updated(max(usual, 0.1), _ratio(share, 0.30))
+
+
+def _part_colour(colour: str, beliefs: Beliefs, sight: Sight | None) -> float:
+    usual = _expect(beliefs, lambda p: dict(p.colours).get(colour, 0.02))
+    if sight is None or sight.pixels < 30:
+        return usual
+    return _updated(max(usual, 0.1), _ratio(sight.share(colour), 0.08))
+
+
+def _white(beliefs: Beliefs, sight: Sight | None) -> float:
+    usual = _expect(beliefs, lambda p: p.white)
+    if sight is None or sight.pixels < 30:
+        return usual
+    share = sight.share("white")
+    # What shines through glass, and its reflections, are not its own.
+    share *= (1 - sight.clear) * (1 - _expect(beliefs, lambda p: float(p.transparent)))
+    return _updated(usual, _ratio(share, 0.05))
+
+
+def _label(beliefs: Beliefs, sight: Sight | None) -> float:
+    usual = _expect(beliefs, lambda p: p.label)
+    if sight is None or sight.pixels < 200:
+        return usual
+    if any(len(word) >= _A_WORD for word in sight.words):
+        return _updated(usual, 4.0)
+    return _updated(usual, _ratio(sight.text, 0.08, strength=1.0))
+
+
+def _shape(shape: str, beliefs: Beliefs, sight: Sight | None) -> float:
+    usual = _expect(beliefs, lambda p: 0.9 if shape in p.shape else 0.08)
+    if shape == "round" and sight is not None and sight.pixels >= 30:
+        return _updated(usual, _ratio(max(0.0, sight.roundness - 0.6), 0.25, strength=1.0))
+    return usual
+
+
+def _expect(beliefs: Beliefs, value: Callable[[Prototype], float]) -> float:
+    known = prototypes()
+    return sum(p * value(known[name]) for name, p in beliefs.items() if name in known)
+
+
+def _ratio(share: float, middle: float, strength: float = 1.6) -> float:
+    """Logarithm of how much a share of pixels speaks for an attribute; 0 at the middle."""
+    return strength * math.tanh(math.log((share + 0.004) / middle)) * 1.6
+
+
+def _updated(prior: float, log_ratio: float) -> float:
+    prior = min(max(prior, 0.01), 0.99)
+    return 1 / (1 + math.exp(-(math.log(prior / (1 - prior)) + log_ratio)))
+
+
+def _from_there(
+    source: tuple[Relation, tuple[str, ...]], thing: Thing, others: Sequence[Thing]
+) -> float:
+    relation, classes = source
+    if relation is Relation.FLOOR:
+        return 1.0 if thing.bottom_z < _FLOOR_BOTTOM_M else 0.0
+    near = [
+        other.position.horizontal_distance(thing.position)
+        for other in others
+        if other.tag != thing.tag and class_of(other.tag) in classes
+    ]
+    return 1.0 if near and min(near) < _NEAR_SOURCE_M else 0.1
+
+
+def thing_of(tag: str, position: Vec3, volume_cm3: float, kind: str = "") -> Thing:
+    """A thing with its size estimated from what it is, or most probably is by its volume."""
+    width, height = size_of(kind or _kind_by_volume(tag, volume_cm3), volume_cm3)
+    return Thing(tag, position, volume_cm3, width, height)
+
+
+@lru_cache(maxsize=512)
+def _kind_by_volume(tag: str, volume_cm3: float) -> str:
+    return likeliest(classify(tag, volume_cm3, None))

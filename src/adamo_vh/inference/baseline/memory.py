@@ -1,0 +1,112 @@
+"""What the model knows in one step, and forgets after it: rebuilt each time from the messages."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from adamo_vh.geometry import Vec3
+
+
+class Status(StrEnum):
+    """How far a job is."""
+
+    TODO = "todo"
+    DONE = "done"
+    FAILED = "failed"
+
+
+class Search(StrEnum):
+    """What a call does for the search; empty for all others."""
+
+    NONE = ""
+    ROUND = "v"
+    """A step of the fixed way round the room."""
+    APPROACH = "w"
+    """A walk to something that was seen from afar."""
+    NEARER = "l"
+    """A look at it from there."""
+    ASIDE = "a"
+    """Puts a thing away to have the hand free."""
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One thing to bring to one place."""
+
+    goal: int
+    """Index of the goal in the plan."""
+    tag: str
+    status: Status = Status.TODO
+    tries: int = 0
+    """Drops and refused picks so far."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """An object as remembered: last known place and estimated size."""
+
+    tag: str
+    position: Vec3
+    """Centre of its box, world metres."""
+    volume_cm3: float
+    width_m: float
+    """Largest horizontal extent, estimated."""
+    height_m: float
+
+    @property
+    def bottom_z(self) -> float:
+        """Height of what it stands on, estimated, metres."""
+        return max(0.0, self.position.z - self.height_m / 2)
+
+
+Slot = tuple[str, int]
+"""("goal" or "place", index of the goal): one description of the plan."""
+
+
+@dataclass(slots=True)
+class Memory:
+    """All that is known."""
+
+    views: int = 0
+    """How many steps of the way round the room were made."""
+    visits: int = 0
+    """How many steps were made to see far things from nearby."""
+    aside: int = 0
+    """How often something was put aside to empty the hand."""
+    hand: str = ""
+    """Tag in the hand, as far as known; empty for none."""
+    jobs: list[Job] = field(default_factory=list)
+    fits: dict[Slot, dict[str, float]] = field(default_factory=dict)
+    """How well things fit each description of the plan, 0 to 1."""
+    things: dict[str, Thing] = field(default_factory=dict)
+    seen_m: dict[str, float] = field(default_factory=dict)
+    """From how near the pixels of things were looked at, metres."""
+    before_m: dict[str, float] = field(default_factory=dict)
+    """The same before the newest view, for what it lists."""
+    kinds: dict[str, str] = field(default_factory=dict)
+    """What things behind opaque tags seem to be, by their looks."""
+    inspected: set[str] = field(default_factory=set)
+    """Things that were seen close up."""
+
+    def job(self, goal: int, tag: str) -> Job | None:
+        """The job of a thing in a goal."""
+        return next((j for j in self.jobs if j.goal == goal and j.tag == tag), None)
+
+    def set_job(self, job: Job) -> None:
+        """Add a job or replace it."""
+        for at, old in enumerate(self.jobs):
+            if (old.goal, old.tag) == (job.goal, job.tag):
+                self.jobs[at] = job
+                return
+        self.jobs.append(job)
+
+    def copy(self) -> Memory:
+        """One that changes by itself; what it holds is either copied or immutable."""
+        twin = copy.copy(self)
+        twin.jobs = list(self.jobs)
+        twin.fits = {slot: dict(fits) for slot, fits in self.fits.items()}
+        twin.things, twin.seen_m = dict(self.things), dict(self.seen_m)
+        twin.kinds, twin.inspected = dict(self.kinds), set(self.inspected)
+        return twin

@@ -1,0 +1,65 @@
+"""The baseline behind the one interface of all models."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.baseline.grammar import understand
+from adamo_vh.inference.baseline.manner import manner_of
+from adamo_vh.inference.baseline.ocr import MISSING, PrintReader, installed
+from adamo_vh.inference.baseline.policy import decide
+from adamo_vh.inference.baseline.reading import read_prompt
+from adamo_vh.inference.baseline.saying import say
+from adamo_vh.inference.messages import Message
+from adamo_vh.inference.model import ModelKind, Reply, Sampling
+
+
+class BaselineModel:
+    """A rule-based player that sees only what any model sees: the messages.
+
+    It keeps nothing between calls. The same messages always give the same reply, so it can be
+    shared between episodes and served to many at once.
+    """
+
+    def __init__(self, ocr: bool | None = False) -> None:
+        """Choose the senses.
+
+        Args:
+            ocr: Read printed words too, for which the extra `ocr` must be installed; slower. None
+                to do so where it is installed.
+        """
+        wanted = ocr or (ocr is None and installed())
+        self._name = "baseline:ocr" if wanted else "baseline"
+        self._reader = PrintReader() if wanted and installed() else None
+        self._remark = MISSING if wanted and not installed() else ""
+
+    @property
+    def name(self) -> str:
+        """As in its URI."""
+        return self._name
+
+    @property
+    def kind(self) -> ModelKind:
+        """No learned weights: reports keep it apart from VLMs."""
+        return ModelKind.RULE_BASED
+
+    def complete(
+        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+    ) -> Reply:
+        """Answer with a note and one call, or with the final answer.
+
+        Args:
+            messages: The whole prompt, oldest first.
+            tools: The tools on offer; a step that needs another one ends the episode.
+            sampling: Has no effect: the rules are deterministic.
+        """
+        begin = time.perf_counter()
+        prompt, manner = read_prompt(messages), manner_of(messages, tools)
+        step = decide(prompt, understand(prompt.instruction), manner, self._reader)
+        if self._remark and not prompt.turns:
+            step = replace(step, note=f"{self._remark} {step.note}")
+        message = say(step, manner, prompt.instruction)
+        return Reply(message, seconds=time.perf_counter() - begin)

@@ -1,0 +1,341 @@
+"""Noun phrases: from symbols to descriptions of things."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from adamo_vh.inference.baseline.goals import Description, Relation, Size
+from adamo_vh.inference.baseline.lexicon import Kind, Token, is_plural
+
+_BEFORE_NOUN = frozenset(
+    {Kind.DET, Kind.EVERY, Kind.COUNT, Kind.COLOUR, Kind.SHAPE, Kind.GLASSY, Kind.SIZE}
+)
+_STARTERS = _BEFORE_NOUN | {Kind.CLASS, Kind.OBJECT, Kind.ID, Kind.TAGGED, Kind.LABEL}
+
+
+class NotUnderstood(Exception):  # noqa: N818 - a control signal of the parser, never seen outside
+    """A part of the instruction has no meaning here."""
+
+
+class Cursor:
+    """A position in a list of symbols; filler is skipped."""
+
+    def __init__(self, tokens: list[Token]) -> None:
+        self._tokens = [token for token in tokens if token.kind is not Kind.SKIP]
+        self._at = 0
+
+    def peek(self, ahead: int = 0) -> Kind | None:
+        """Kind of the next symbol, None at the end."""
+        at = self._at + ahead
+        return self._tokens[at].kind if at < len(self._tokens) else None
+
+    def next(self) -> Token:
+        """Consume a symbol."""
+        self._at += 1
+        return self._tokens[self._at - 1]
+
+    def accept(self, *kinds: Kind) -> Token | None:
+        """Consume the next symbol if it is of one of these kinds."""
+        return self.next() if self.peek() in kinds else None
+
+    def mark(self) -> int:
+        """The position, for `rewind`."""
+        return self._at
+
+    def rewind(self, mark: int) -> None:
+        """Go back to a marked position."""
+        self._at = mark
+
+    def ahead(self) -> str:
+        """The words of the next symbol; empty at the end."""
+        return self._tokens[self._at].text if self._at < len(self._tokens) else ""
+
+    def words_since(self, mark: int) -> str:
+        """The words between a mark and here."""
+        return " ".join(token.text for token in self._tokens[mark : self._at])
+
+    def fail(self, why: str = "") -> NotUnderstood:
+        """An exception that quotes the words ahead."""
+        ahead = [token.text for token in self._tokens[self._at : self._at + 4]]
+        quoted = f"'{' '.join(ahead)}'" if ahead else "the end of the sentence"
+        return NotUnderstood(f"{quoted}{f' ({why})' if why else ''}")
+
+
+@dataclass(slots=True)
+class _Draft:
+    """A description under construction."""
+
+    ids: list[str] = field(default_factory=list)
+    classes: list[str] = field(default_factory=list)
+    colours: list[str] = field(default_factory=list)
+    part_colours: list[str] = field(default_factory=list)
+    shapes: list[str] = field(default_factory=list)
+    transparent: bool = False
+    label: bool = False
+    size: Size | None = None
+    every: bool = False
+    count: int | None = None
+    generic: bool = False
+    plural: bool = False
+    source: tuple[Relation, tuple[str, ...]] | None = None
+
+    def narrow(self, value: str) -> None:
+        """Add what a class word may mean; two words together mean what both can mean."""
+        new = value.split()
+        both = [name for name in self.classes if name in new]
+        self.classes = both or (new if not self.classes else self.classes)
+
+    def says_something(self) -> bool:
+        return bool(
+            self.ids or self.classes or self.colours or self.part_colours or self.shapes
+            or self.transparent or self.label or self.size or self.every
+        )  # fmt: skip
+
+    def finish(self, text: str) -> Description:
+        return Description(
+            text=text,
+            ids=tuple(dict.fromkeys(self.ids)),
+            classes=tuple(self.classes),
+            colours=tuple(dict.fromkeys(self.colours)),
+            part_colours=tuple(dict.fromkeys(self.part_colours)),
+            shapes=tuple(dict.fromkeys(self.shapes)),
+            transparent=self.transparent,
+            label=self.label,
+            size=self.size,
+            every=self.every or (self.plural and (self.count or 0) > 1),
+            count=self.count if self.plural else None,
+            source=self.source,
+        )
+
+
+def starts_phrase(cursor: Cursor) -> bool:
+    """Whether a noun phrase begins here."""
+    return cursor.peek() in _STARTERS
+
+
+def noun_phrase(cursor: Cursor) -> Description:
+    """Read a noun phrase.
+
+    Raises:
+        NotUnderstood: Here begins none, or it says nothing that tells things apart.
+    """
+    begin = cursor.mark()
+    draft = _Draft()
+    _before_noun(cursor, draft)
+    found = _noun(cursor, draft)
+    any_of_them = cursor.words_since(begin).startswith("any ")
+    while _after_noun(cursor, draft):
+        # "any object with a label" on the floor: all such objects.
+        draft.every = draft.every or (any_of_them and draft.generic)
+        found = True
+    if not found and not draft.says_something():
+        raise cursor.fail("I expected a thing here")
+    if not draft.says_something() and not draft.generic:
+        raise cursor.fail("I expected a thing here")
+    text = cursor.words_since(begin)
+    if not draft.says_something():
+        cursor.rewind(begin)
+        raise cursor.fail("this could be any object")
+    return draft.finish(text)
+
+
+def _before_noun(cursor: Cursor, draft: _Draft) -> None:
+    while cursor.peek() in _BEFORE_NOUN or cursor.peek() in (Kind.COMMA, Kind.AND):
+        if cursor.peek() in (Kind.COMMA, Kind.AND):
+            adjectives = (Kind.COLOUR, Kind.SHAPE, Kind.GLASSY)
+            if (draft.colours or draft.shapes) and cursor.peek(1) in adjectives:
+                cursor.next()
+                continue
+            return
+        _adjective(cursor.next(), draft)
+
+
+def _adjective(token: Token, draft: _Draft) -> None:
+    match token.kind:
+        case Kind.EVERY:
+            draft.every = True
+        case Kind.COUNT:
+            draft.count = int(token.value)
+        case Kind.COLOUR:
+            draft.colours.append(token.value)
+        case Kind.SHAPE:
+            draft.shapes.append(token.value)
+        case Kind.GLASSY:
+            draft.transparent = True
+        case Kind.SIZE:
+            draft.size = Size(token.value)
+
+
+def _noun(cursor: Cursor, draft: _Draft) -> bool:
+    """The head: a class, a generic noun, or nothing ("the smallest")."""
+    found = False
+    while cursor.peek() in (Kind.CLASS, Kind.OBJECT) or (
+        cursor.peek() is Kind.LABEL and cursor.peek(1) in (Kind.CLASS, Kind.OBJECT)
+    ):
+        token = cursor.next()
+        found = True
+        if token.kind is Kind.CLASS:
+            draft.narrow(token.value)
+        elif token.kind is Kind.LABEL:
+            draft.label = True
+        else:
+            draft.generic = True
+        if is_plural(token):
+            draft.plural = True
+            draft.every = draft.every or not draft.count
+    return found
+
+
+def _after_noun(cursor: Cursor, draft: _Draft) -> bool:
+    """One further remark behind the noun; False if there is none."""
+    mark = cursor.mark()
+    readers = (_id, _of, _location, _being, _having, _text)
+    for reader in readers:
+        if reader(cursor, draft):
+            return True
+        cursor.rewind(mark)
+    return False
+
+
+def _id(cursor: Cursor, draft: _Draft) -> bool:
+    """Read "tagged as 34", "number 34", "34 and 35", "called plate"."""
+    cursor.accept(Kind.THAT)
+    marked = False
+    while cursor.accept(Kind.TAGGED, Kind.BE):
+        marked = True
+    if marked and (token := cursor.accept(Kind.CLASS)):
+        draft.narrow(token.value)
+        return True
+    if token := cursor.accept(Kind.ID):
+        draft.ids.append(token.value)
+        while cursor.peek() in (Kind.AND, Kind.COMMA) and cursor.peek(1) is Kind.ID:
+            cursor.next()
+            draft.ids.append(cursor.next().value)
+            draft.every = True
+        return True
+    return False
+
+
+def _of(cursor: Cursor, draft: _Draft) -> bool:
+    """Read "the smallest of the locks", "of all", "of red colour"."""
+    if not cursor.accept(Kind.OF):
+        return False
+    if cursor.peek() is Kind.COLOUR:
+        _adjective(cursor.next(), draft)
+        cursor.accept(Kind.PART)
+        return True
+    every = draft.every
+    seen = False
+    while cursor.peek() in _BEFORE_NOUN or cursor.peek() is Kind.PRONOUN:
+        token = cursor.next()
+        seen = True
+        if token.kind not in (Kind.PRONOUN, Kind.COUNT):
+            _adjective(token, draft)
+    seen = _noun(cursor, draft) or seen
+    seen = (draft.size is not None and cursor.accept(Kind.MEASURE) is not None) or seen
+    draft.every = every  # "one of the locks" is one, "all of the locks" is read before
+    return seen
+
+
+def _location(cursor: Cursor, draft: _Draft) -> bool:
+    """Read "that is on the floor", "standing near the plate", "from the table": where it is now."""
+    cursor.accept(Kind.THAT)
+    is_now = cursor.accept(Kind.BE)
+    word = cursor.accept(Kind.FROM) or (
+        is_now and cursor.accept(Kind.ON, Kind.NEAR, Kind.IN, Kind.TO)
+    )
+    if not word:
+        return False
+    cursor.accept(Kind.ON)
+    while cursor.accept(Kind.DET):
+        pass
+    if cursor.accept(Kind.FLOOR):
+        draft.source = (Relation.FLOOR, ())
+        return True
+    if cursor.accept(Kind.FURNITURE, Kind.ROOM):
+        return True
+    if word.kind is Kind.NEAR and (token := cursor.accept(Kind.CLASS)):
+        draft.source = (Relation.NEAR, tuple(token.value.split()))
+        return True
+    return False
+
+
+def _being(cursor: Cursor, draft: _Draft) -> bool:
+    """Read "that is blue and round", "which are the smallest"."""
+    cursor.accept(Kind.THAT)
+    if not cursor.accept(Kind.BE, Kind.IN):
+        return False
+    cursor.accept(Kind.DET, Kind.COUNT)
+    seen = False
+    while token := cursor.accept(Kind.COLOUR, Kind.SHAPE, Kind.GLASSY, Kind.SIZE):
+        seen = True
+        if token.kind is Kind.COLOUR and cursor.peek() is Kind.PART:
+            draft.part_colours.append(token.value)
+        else:
+            _adjective(token, draft)
+        cursor.accept(Kind.PART)
+        if cursor.peek() in (Kind.AND, Kind.COMMA) and cursor.peek(1) in (
+            Kind.COLOUR,
+            Kind.SHAPE,
+            Kind.GLASSY,
+        ):
+            cursor.next()
+    if not seen and cursor.accept(Kind.LABEL):
+        draft.label = True
+        return True
+    return seen
+
+
+def _having(cursor: Cursor, draft: _Draft) -> bool:
+    """Read "with white parts", "that have a printed label", "with the smallest volume"."""
+    cursor.accept(Kind.THAT)
+    if not cursor.accept(Kind.WITH):
+        return False
+    return _possession(cursor, draft)
+
+
+def _possession(cursor: Cursor, draft: _Draft) -> bool:
+    while cursor.accept(Kind.DET, Kind.EVERY, Kind.OBJECT):
+        pass
+    if cursor.peek() is Kind.SIZE:
+        _adjective(cursor.next(), draft)
+        return cursor.accept(Kind.MEASURE) is not None
+    if token := cursor.accept(Kind.COLOUR):
+        draft.part_colours.append(token.value)
+        cursor.accept(Kind.PART)
+        if cursor.peek() is Kind.AND and cursor.peek(1) is Kind.COLOUR:
+            cursor.next()
+            return _possession(cursor, draft)
+        _on_it(cursor)
+        return True
+    if cursor.accept(Kind.PART):
+        if cursor.accept(Kind.BE, Kind.IN, Kind.OF) and (token := cursor.accept(Kind.COLOUR)):
+            draft.part_colours.append(token.value)
+            return True
+        return False
+    if _text(cursor, draft):
+        return True
+    return _id(cursor, draft)
+
+
+def _text(cursor: Cursor, draft: _Draft) -> bool:
+    """Read "a printed label", "labelled TOMATO SOUP"."""
+    if not cursor.accept(Kind.LABEL):
+        return False
+    while cursor.accept(Kind.LABEL, Kind.BE, Kind.DET):
+        pass
+    if token := cursor.accept(Kind.CLASS):
+        draft.narrow(token.value)
+    elif token := cursor.accept(Kind.ID):
+        draft.ids.append(token.value)
+    else:
+        draft.label = True
+    _on_it(cursor)
+    return True
+
+
+def _on_it(cursor: Cursor) -> None:
+    mark = cursor.mark()
+    cursor.accept(Kind.BE)
+    if not (cursor.accept(Kind.ON, Kind.IN) and cursor.accept(Kind.PRONOUN)):
+        cursor.rewind(mark)

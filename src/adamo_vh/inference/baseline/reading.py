@@ -1,0 +1,270 @@
+"""What the prompt says: messages read back into data, as any reader of the text could.
+
+Two layouts are known, and what lies between them: the whole state in one place and always the
+latest, or what changed with each result. Which one it is shows in the messages themselves.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline.state_text import Body, Listed, StateReader, first_point
+from adamo_vh.inference.messages import (
+    AIMessage,
+    HumanMessage,
+    ImagePart,
+    Message,
+    SystemMessage,
+    TextPart,
+    ToolMessage,
+)
+
+__all__ = ["Body", "Event", "Listed", "Prompt", "Room", "Turn", "first_point", "read_prompt"]
+
+_NUMBER = r"(-?\d+(?:\.\d+)?)"
+_SPAN = re.compile(rf"x from {_NUMBER} to {_NUMBER} and y from {_NUMBER} to {_NUMBER}")
+_CORNER = re.compile(rf"{_NUMBER} x {_NUMBER} m squares")
+_NEAR = re.compile(rf"within {_NUMBER} m horizontally")
+_NEW_VIEW = "New view after"
+_CLOSE_UP = "What "
+"""How the words before a frame begin that is no view of the eyes."""
+_LEFT_OUT = "(An earlier picture"
+CLOSEUPS = ("Inspect", "Survey")
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """What the fixed instructions say about the room, metres."""
+
+    x_min: float = -3.0
+    x_max: float = 3.0
+    y_min: float = -3.0
+    y_max: float = 3.0
+    corner_m: float = 1.0
+    near_m: float = 0.3
+
+    def clamp(self, point: Vec3, margin_m: float) -> Vec3:
+        """The nearest point that keeps a distance to the walls."""
+        x = min(max(point.x, self.x_min + margin_m), self.x_max - margin_m)
+        y = min(max(point.y, self.y_min + margin_m), self.y_max - margin_m)
+        return Vec3(x, y, point.z)
+
+    def corners(self) -> tuple[Vec3, ...]:
+        """Centres of the four corner areas."""
+        half = self.corner_m / 2
+        return tuple(
+            Vec3(x, y, 0.0)
+            for x in (self.x_min + half, self.x_max - half)
+            for y in (self.y_min + half, self.y_max - half)
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A tool call and what came back."""
+
+    name: str
+    arguments: Mapping[str, Any]
+    text: str
+    """The feedback alone."""
+    pictures: tuple[ImagePart, ...] = ()
+    """Close-ups that came with it."""
+
+    @property
+    def outcome(self) -> str:
+        """Its first word: "done", "corrected", "refused", "not"."""
+        word = re.match(r"\W*(\w+)", self.text)
+        return word.group(1).lower() if word else ""
+
+    @property
+    def executed(self) -> bool:
+        """Whether it was tried at all."""
+        return self.outcome not in ("not", "")
+
+    @property
+    def tag(self) -> str:
+        """The object that it was about."""
+        return str(self.arguments.get("object", ""))
+
+    @property
+    def point(self) -> Vec3 | None:
+        """The last coordinates in the feedback."""
+        return first_point(self.text, last=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """One own message, and what came back for its calls."""
+
+    note: str
+    events: tuple[Event, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Prompt:
+    """The whole prompt, read."""
+
+    instruction: str
+    room: Room = field(default_factory=Room)
+    things: tuple[Listed, ...] = ()
+    """What the latest view shows."""
+    points: tuple[Vec3, ...] = ()
+    """Reference points, world metres."""
+    body: Body = field(default_factory=lambda: Body(Vec3(0.0, 0.0, 0.0)))
+    frame: ImagePart | None = None
+    """The latest view."""
+    turns: tuple[Turn, ...] = ()
+    """The own turns since the instruction, as far as they are in the prompt."""
+    event: Event | None = None
+    """The latest call that was tried; None before the first."""
+    fresh: bool = True
+    """Whether the view came after the last own turn."""
+    told: Mapping[str, Listed] = field(default_factory=dict)
+    """The latest word about each object that any text of the prompt lists."""
+    told_at: Mapping[str, int] = field(default_factory=dict)
+    """After how many of the own turns that was."""
+    told_from_m: Mapping[str, float] = field(default_factory=dict)
+    """From how far; empty where lists do not last."""
+    pinned: frozenset[str] = frozenset()
+    """Objects that the instruction's own message lists; it stays in the prompt for good."""
+    lasting: bool = False
+    """Whether lists stay in the prompt; otherwise the next view's list replaces this one."""
+
+    @property
+    def points_key(self) -> tuple[tuple[float, float, float], ...]:
+        """The reference points as plain tuples."""
+        return tuple((p.x, p.y, p.z) for p in self.points)
+
+
+@dataclass(slots=True)
+class _Reader:
+    """Goes through the messages once, oldest first."""
+
+    state: StateReader = field(default_factory=StateReader)
+    system: list[str] = field(default_factory=list)
+    instruction: str = ""
+    frame: ImagePart | None = None
+    turns: list[Turn] = field(default_factory=list)
+    calls: dict[str, tuple[str, Mapping[str, Any]]] = field(default_factory=dict)
+    fresh: bool = True
+    viewed: int = 0
+    pinned: frozenset[str] = frozenset()
+
+    def read(self, message: Message) -> None:
+        match message:
+            case SystemMessage(text=text):
+                if not self.state.read_whole(text):
+                    self.system.append(text)
+            case HumanMessage():
+                self._human(message)
+            case AIMessage():
+                self._own(message)
+            case ToolMessage():
+                self._result(message)
+
+    def _human(self, message: HumanMessage) -> None:
+        texts = [part.text for part in message.parts if isinstance(part, TextPart)]
+        images = [part for part in message.parts if isinstance(part, ImagePart)]
+        first = texts[0] if texts else ""
+        if self.state.read_whole(first):
+            return
+        left_out = any(text.startswith(_LEFT_OUT) for text in texts)
+        if self.turns and first.startswith(_CLOSE_UP) and first.rstrip(".").endswith("shows"):
+            self._add_pictures(tuple(images))
+        elif self.turns and first.startswith(_NEW_VIEW):
+            self._view(images)
+        elif not self.instruction or images or left_out or len(texts) > 1:
+            self.instruction = first.strip()
+            self.turns.clear()
+            self.state.turn = 0
+            for text in texts[1:]:
+                self.state.read_changes(text)
+            self.pinned = self.pinned | frozenset(self.state.told)
+            self._view(images)
+
+    def _own(self, message: AIMessage) -> None:
+        arguments = [dict(call.arguments or {}) for call in message.calls]
+        notes = [str(a["note"]) for a in arguments if isinstance(a.get("note"), str)]
+        self.turns.append(Turn(message.text or "\n".join(notes), ()))
+        self.state.turn = len(self.turns)
+        for call, values in zip(message.calls, arguments, strict=True):
+            self.calls[call.id] = (call.name, values)
+        self.fresh = False
+
+    def _result(self, message: ToolMessage) -> None:
+        seen = self.state.read_changes(message.text)
+        name, arguments = self.calls.get(message.call_id, (message.name, {}))
+        text = message.text.split("\n\n", 1)[0].split(f"\n{_LEFT_OUT}", 1)[0]
+        pictures = message.images
+        close = name in CLOSEUPS or text.startswith("Not ")
+        if seen or (pictures and not close) or (name in CLOSEUPS and len(pictures) > 1):
+            self._view(pictures[-1:])
+            pictures = pictures[:-1]
+        if self.turns:
+            event = Event(name, arguments, text, pictures)
+            turn = self.turns[-1]
+            self.turns[-1] = Turn(turn.note, (*turn.events, event))
+
+    def _view(self, images: Sequence[ImagePart]) -> None:
+        self.fresh = True
+        self.viewed = len(self.turns)
+        if images:
+            self.frame = images[-1]
+
+    def _add_pictures(self, images: tuple[ImagePart, ...]) -> None:
+        turn = self.turns[-1]
+        if turn.events:
+            last = turn.events[-1]
+            event = Event(last.name, last.arguments, last.text, (*last.pictures, *images))
+            self.turns[-1] = Turn(turn.note, (*turn.events[:-1], event))
+
+
+def read_prompt(messages: Sequence[Message]) -> Prompt:
+    """Read all messages; parts that are missing read as empty.
+
+    Args:
+        messages: The prompt, oldest first.
+    """
+    reader = _Reader()
+    for message in messages:
+        reader.read(message)
+    state = reader.state
+    tried = [event for turn in reader.turns for event in turn.events if event.executed]
+    return Prompt(
+        instruction=reader.instruction,
+        room=_room("\n".join(reader.system)),
+        things=state.things(),
+        points=state.points,
+        body=state.body,
+        frame=reader.frame,
+        turns=tuple(reader.turns),
+        event=tried[-1] if tried else None,
+        fresh=reader.fresh,
+        told=state.told,
+        told_at=state.told_at if state.views else dict.fromkeys(state.told, reader.viewed),
+        told_from_m=state.told_from_m,
+        pinned=reader.pinned if state.views else frozenset(),
+        lasting=state.views > 0,
+    )
+
+
+def _room(text: str) -> Room:
+    span, corner, near = _SPAN.search(text), _CORNER.search(text), _NEAR.search(text)
+    usual = Room()
+    x_min, x_max, y_min, y_max = (
+        (float(v) for v in span.groups())
+        if span
+        else (usual.x_min, usual.x_max, usual.y_min, usual.y_max)
+    )
+    return Room(
+        x_min,
+        x_max,
+        y_min,
+        y_max,
+        float(corner.group(1)) if corner else usual.corner_m,
+        float(near.group(1)) if near else usual.near_m,
+    )

@@ -1,0 +1,120 @@
+"""What a model and its server can do, as a probe found out, and where that is kept."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import tempfile
+from dataclasses import dataclass, field
+from enum import StrEnum
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from adamo_vh.inference.model import Rung, Usage
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
+
+class Support(StrEnum):
+    """Whether something works."""
+
+    YES = "yes"
+    NO = "no"
+    """Accepted, but the answer shows that it was not taken in or not obeyed."""
+    REFUSED = "refused"
+    """The server answers with an error."""
+    UNTESTED = "untested"
+
+
+class ToolSupport(StrEnum):
+    """What becomes of a tool call."""
+
+    NATIVE = "native"
+    LEAKED = "leaked"
+    """Written into the text."""
+    NONE = "none"
+    REFUSED = "refused"
+    """The server answers with an error."""
+
+
+@dataclass(frozen=True, slots=True)
+class Capabilities:
+    """What a model that was reached can do."""
+
+    uri: str
+    rung: Rung
+    """How it is best asked."""
+    tools: ToolSupport
+    schema: Support
+    """Whether answers obey a JSON schema."""
+    pictures: Support
+    """Whether it sees a picture in a message."""
+    result_pictures: Support
+    """Whether it sees a picture that comes with the result of a tool."""
+    refused: tuple[str, ...] = ()
+    """Parameters that the server refuses; requests go without them."""
+    requests: int = 0
+    """Requests that the probe took; one that failed counts once, however often it was tried."""
+    usage: Usage = field(default_factory=Usage)
+    """Tokens that the probe took."""
+    seconds: float = 0.0
+    """Time that the probe took."""
+    when: str = ""
+    """Date and time of the probe, ISO 8601, UTC."""
+
+
+def capabilities_of(model: object) -> Capabilities | None:
+    """What is known about a model; None if it was not probed or has no wire."""
+    found = getattr(model, "capabilities", None)
+    return found if isinstance(found, Capabilities) else None
+
+
+def load_capabilities(uri: str) -> Capabilities | None:
+    """What an earlier probe found out, if this version of the package made one.
+
+    Args:
+        uri: Model URI.
+    """
+    try:
+        found = _codec().validate_json(_file(uri).read_bytes())
+    except (OSError, ValueError):
+        return None
+    return found if found.uri == uri else None
+
+
+def save_capabilities(capabilities: Capabilities) -> None:
+    """Keep what a probe found out; a cache that cannot be written is no error."""
+    path = _file(capabilities.uri)
+    data = _codec().dump_json(capabilities, indent=1)
+    with contextlib.suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        # Written beside the file and renamed: a reader never sees half a file.
+        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            Path(temporary).replace(path)
+        except BaseException:
+            Path(temporary).unlink(missing_ok=True)
+            raise
+
+
+def _file(uri: str) -> Path:
+    folder = os.environ.get("ADAMO_VH_CACHE_DIR")
+    if not folder:
+        import platformdirs
+
+        folder = platformdirs.user_cache_dir("adamo-vh")
+    key = hashlib.sha256(f"{version('adamo-vh')} {uri}".encode()).hexdigest()[:16]
+    return Path(folder) / "models" / f"{key}.json"
+
+
+@cache
+def _codec() -> TypeAdapter[Capabilities]:
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(Capabilities)

@@ -1,0 +1,188 @@
+"""The ladder: the best that a model can do with what its server offers.
+
+Native tool calls, a call leaked into the text, a JSON step held to a schema, Thought and Action as
+text: the agent above sees the same notes and calls from each rung.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Protocol
+
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.arguments import dump_arguments
+from adamo_vh.inference.capabilities import Capabilities
+from adamo_vh.inference.ladder.conversation import UNREADABLE, merged, rewritten
+from adamo_vh.inference.ladder.json_form import JsonForm
+from adamo_vh.inference.ladder.react_form import ReactForm
+from adamo_vh.inference.ladder.steps import (
+    NOTE,
+    Form,
+    Step,
+    Unreadable,
+    ends_by_answer,
+    known_tool,
+    takes_note,
+)
+from adamo_vh.inference.messages import AIMessage, HumanMessage, Message, TextPart, ToolCall
+from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling
+from adamo_vh.inference.prompts import render
+from adamo_vh.inference.text_calls import fresh_id, recognise_call
+
+_JSON, _REACT = JsonForm(), ReactForm()
+_FORMS: dict[Rung, tuple[Form, ...]] = {
+    Rung.SCHEMA: (_JSON, _REACT),
+    Rung.REACT: (_REACT, _JSON),
+}
+"""How a model is asked on a rung; what it writes in the other form instead is read as well."""
+
+
+class Provider(Protocol):
+    """A model on a wire, which can be held to a schema instead of being offered tools."""
+
+    @property
+    def name(self) -> str:
+        """As in the URI that made it."""
+        ...
+
+    @property
+    def kind(self) -> ModelKind:
+        """What kind of player it is."""
+        ...
+
+    def complete(
+        self,
+        messages: Sequence[Message],
+        tools: Sequence[ToolSchema],
+        sampling: Sampling,
+        *,
+        schema: ToolSchema | None = None,
+    ) -> Reply:
+        """Answer; with a schema, in JSON that obeys it."""
+        ...
+
+    def close(self) -> None:
+        """Close the connections."""
+        ...
+
+
+class Ladder:
+    """A model, asked on one rung."""
+
+    def __init__(
+        self, inner: Provider, rung: Rung, capabilities: Capabilities | None = None
+    ) -> None:
+        """Put a model on a rung.
+
+        Args:
+            inner: The model.
+            rung: How it is asked. `NATIVE` and `LEAKED` ask alike, through the API's tools.
+            capabilities: What a probe found out about it, for the record.
+        """
+        self._inner = inner
+        self._rung = rung
+        self._forms = _FORMS.get(rung, ())
+        self._capabilities = capabilities
+
+    def __repr__(self) -> str:
+        """The name and the rung."""
+        return f"Ladder({self.name!r}, {self._rung.value!r})"
+
+    @property
+    def name(self) -> str:
+        """The model's name."""
+        return self._inner.name
+
+    @property
+    def kind(self) -> ModelKind:
+        """The model's kind."""
+        return self._inner.kind
+
+    @property
+    def rung(self) -> Rung:
+        """How the model is asked."""
+        return self._rung
+
+    @property
+    def capabilities(self) -> Capabilities | None:
+        """What a probe found out about the model; None if it was not probed."""
+        return self._capabilities
+
+    def close(self) -> None:
+        """Close the connections."""
+        self._inner.close()
+
+    def complete(
+        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+    ) -> Reply:
+        """Ask; without tool calls, what cannot be read is asked for once more.
+
+        Raises:
+            ProviderError: The provider failed after all retries.
+        """
+        if not self._forms:
+            return self._inner.complete(messages, tools, sampling)
+        form = self._forms[0]
+        prompt, schema = rewritten(messages, tools, form), form.schema(tools)
+        reply = self._inner.complete(prompt, (), sampling, schema=schema)
+        outcome = self._read(reply.message, messages, tools)
+        if isinstance(outcome, Unreadable):
+            prompt = merged([*prompt, *_repair(reply.message, outcome, form, tools)])
+            again = self._inner.complete(prompt, (), sampling, schema=schema)
+            reply = _together(reply, again)
+            outcome = self._read(again.message, messages, tools)
+        if isinstance(outcome, AIMessage):
+            return replace(reply, message=outcome, rung=self._rung)
+        said = replace(reply.message, kept=UNREADABLE + reply.message.kept)
+        return replace(reply, message=said, rung=self._rung, unreadable=outcome.problem)
+
+    def _read(
+        self, said: AIMessage, messages: Sequence[Message], tools: Sequence[ToolSchema]
+    ) -> AIMessage | Unreadable:
+        """What a reply comes to: a note with a call, or a final answer."""
+        if said.calls:  # Some servers recognise calls although no tool was on offer.
+            return replace(said, calls=said.calls[:1])
+        outcomes = [form.read(said.text, tools) for form in self._forms]
+        taken = {call.id for m in messages if isinstance(m, AIMessage) for call in m.calls}
+        for outcome in outcomes:
+            if isinstance(outcome, Step):
+                return replace(_message(outcome, said.text, taken, tools), kept=said.kept)
+        leaked = recognise_call(said.text, {tool.name for tool in tools}, taken)
+        if leaked is None:
+            return outcomes[0] if isinstance(outcomes[0], Unreadable) else Unreadable("")
+        (call,) = leaked.calls
+        step = Step(leaked.text, call.name, call.arguments or {})
+        return replace(_message(step, said.text, taken, tools), kept=said.kept)
+
+
+def _message(step: Step, text: str, taken: set[str], tools: Sequence[ToolSchema]) -> AIMessage:
+    if step.action is None:
+        return AIMessage(step.answer)
+    args, tool = dict(step.args), known_tool(step.action, tools)
+    if tool is not None and takes_note(tool) and not args.get(NOTE):
+        args = {**args, NOTE: step.thought}
+    call = ToolCall(fresh_id(text, taken), step.action, args, dump_arguments(args))
+    return AIMessage(step.thought, (call,))
+
+
+def _repair(
+    said: AIMessage, outcome: Unreadable, form: Form, tools: Sequence[ToolSchema]
+) -> list[Message]:
+    text = render(f"repair_{form.name}", problem=outcome.problem, final=ends_by_answer(tools))
+    asked = HumanMessage((TextPart(text),))
+    # Servers refuse an empty message in the history.
+    return [said, asked] if said.text.strip() else [asked]
+
+
+def _together(first: Reply, second: Reply) -> Reply:
+    """The second reply, with what both took; one unknown price makes the sum unknown."""
+    costs = (first.cost_usd, second.cost_usd)
+    return replace(
+        second,
+        usage=first.usage + second.usage,
+        seconds=first.seconds + second.seconds,
+        waited_s=first.waited_s + second.waited_s,
+        requests=first.requests + second.requests,
+        cost_usd=None if costs[0] is None or costs[1] is None else costs[0] + costs[1],
+    )

@@ -1,0 +1,135 @@
+"""The one interface behind which any VLM, LLM or rule-based player sits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, Protocol
+
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.messages import AIMessage, Message
+
+
+class ModelKind(StrEnum):
+    """What kind of player a model is; reports never mix them."""
+
+    VLM = "vlm"
+    RULE_BASED = "rule-based"
+    RANDOM = "random"
+    SCRIPTED = "scripted"
+    REPLAY = "replay"
+
+
+@dataclass(frozen=True, slots=True)
+class Sampling:
+    """Decoding settings; the defaults are the paper's (Sec. 4.2)."""
+
+    temperature: float = 0.0
+    top_p: float = 0.0
+    max_tokens: int = 4000
+    """Output tokens at most a message."""
+    exact: bool = False
+    """Send temperature and top-p as they are, and fail where one is refused. Otherwise a top-p of
+    0 is left out at temperature 0 (decoding is greedy without it), and what a server refuses is
+    left out too."""
+
+
+@dataclass(frozen=True, slots=True)
+class Usage:
+    """Tokens of one reply, as the provider counts them; 0 for models without tokens."""
+
+    input_tokens: int = 0
+    """All of the input, cached or not."""
+    output_tokens: int = 0
+    """All of the output, reasoning included."""
+    cached_tokens: int = 0
+    """Part of the input that a provider cache served."""
+    reasoning_tokens: int = 0
+    """Part of the output that was hidden reasoning."""
+
+    def __add__(self, other: Usage) -> Usage:
+        return Usage(
+            self.input_tokens + other.input_tokens,
+            self.output_tokens + other.output_tokens,
+            self.cached_tokens + other.cached_tokens,
+            self.reasoning_tokens + other.reasoning_tokens,
+        )
+
+    @property
+    def total_tokens(self) -> int:
+        """Input plus output."""
+        return self.input_tokens + self.output_tokens
+
+
+class Rung(StrEnum):
+    """How a model is asked for its calls, from the best way down: the ladder."""
+
+    NATIVE = "native"
+    """Tool calls of the provider's API."""
+    LEAKED = "leaked"
+    """The same, but the model writes the call into its text."""
+    SCHEMA = "schema"
+    """No tools: the reply is one JSON step, held to a schema by the server."""
+    REACT = "react"
+    """No tools and no schema: Thought, Action and Action Input as text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """One answer of a model."""
+
+    message: AIMessage
+    usage: Usage = Usage()
+    """Of all requests that this answer took, a repair turn included."""
+    seconds: float = 0.0
+    """Time of the successful requests alone."""
+    waited_s: float = 0.0
+    """Time lost to failed tries, retries and rate limits; left out of the episode's time cap."""
+    requests: int = 1
+    """Requests that were answered or failed for this answer."""
+    cost_usd: float | None = None
+    """What it cost; None if no price is known."""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """The decoding settings that were in effect: what was sent, not what was wished."""
+    rung: Rung | None = None
+    """How the answer was asked for; None for models without a wire."""
+    unreadable: str = ""
+    """Why the answer is neither a valid call nor a final answer, although the model was asked to
+    repair it; empty if it is one. A counted protocol failure."""
+
+
+class Model(Protocol):
+    """Answers a conversation with a note and tool calls."""
+
+    @property
+    def name(self) -> str:
+        """As in the URI that made it, without any secret."""
+        ...
+
+    @property
+    def kind(self) -> ModelKind:
+        """What kind of player it is."""
+        ...
+
+    def complete(
+        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+    ) -> Reply:
+        """Answer.
+
+        Args:
+            messages: The whole prompt, oldest first.
+            tools: The tools on offer.
+            sampling: Decoding settings.
+
+        Raises:
+            ModelError: No answer could be had.
+        """
+        ...
+
+
+def close_model(model: Model) -> None:
+    """Close a model's connections, if it has any."""
+    close = getattr(model, "close", None)
+    if callable(close):
+        close()

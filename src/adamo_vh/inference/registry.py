@@ -1,0 +1,147 @@
+"""From a model's URI to the model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from adamo_vh.errors import ModelConfigError
+from adamo_vh.inference.model import Model, Rung
+from adamo_vh.inference.retry import RetryPolicy
+
+if TYPE_CHECKING:
+    from adamo_vh.inference.capabilities import Capabilities
+
+KNOWN = (
+    "baseline, baseline:ocr, random, random:SEED, scripted:FILE.json, replay:RUN_DIR, "
+    "cassette:RUN_DIR, openai:NAME, openai:NAME@http://HOST:PORT/v1 (any OpenAI-compatible "
+    "server), openai-responses:NAME, anthropic:NAME, google:NAME, or PROVIDER:NAME with another "
+    "provider of pydantic-ai, e.g. openrouter:NAME, ollama:NAME, mistral:NAME"
+)
+
+AUTO = "auto"
+_RUNGS = {"native": Rung.NATIVE, "schema": Rung.SCHEMA, "react": Rung.REACT}
+TOOLS = (AUTO, *_RUNGS)
+"""How a remote model may be asked for its calls."""
+
+
+def create_model(
+    uri: str,
+    retry: RetryPolicy | None = None,
+    *,
+    tools: str = AUTO,
+    several_calls: bool = False,
+    cache: bool = False,
+) -> Model:
+    """Make the model of a URI.
+
+    ``replay:`` needs a run folder, which inference knows nothing of; `adamo_vh.assemble` makes it.
+
+    Args:
+        uri: ``baseline``, ``baseline:ocr``, ``random``, ``random:SEED``,
+            ``scripted:FILE.json``, ``cassette:DIR``, ``openai:NAME``, ``openai:NAME@URL`` or
+            ``PROVIDER:NAME``.
+        retry: Limits on trying a remote model again.
+        tools: How a remote model is asked for its calls. "auto" takes the best way that works: it
+            probes the model unless that was done before. "native", "schema" and "react" probe
+            nothing.
+        several_calls: Whether a remote model may call several tools in one turn, where it is asked
+            through native tools.
+        cache: Ask providers that want to be asked (Anthropic) to cache the prompt's beginning;
+            worth it only where the prompt grows at its end.
+
+    Returns:
+        The model. A remote one is a `Ladder`, which has `capabilities` if it was ever probed.
+
+    Raises:
+        ModelConfigError: The URI or `tools` is unknown, or the provider's package or key is
+            missing.
+        ModelError: The model had to be probed and cannot be reached.
+        ConfigError: The script is missing or wrong.
+    """
+    if tools not in TOOLS:
+        raise ModelConfigError(f"There is no way {tools!r} to ask. Use one of {', '.join(TOOLS)}.")
+    local = create_local_model(uri)
+    if local is not None:
+        return local
+    check_remote_uri(uri)
+    return _remote_model(uri, retry, tools, several_calls=several_calls, cache=cache)
+
+
+def check_remote_uri(uri: str) -> None:
+    """Make sure that a URI is written like that of a remote model.
+
+    Raises:
+        ModelConfigError: It is not; lists what is known.
+    """
+    prefix, _, rest = uri.partition(":")
+    if not rest or not (prefix == "openai" or _is_known_provider(prefix)):
+        raise ModelConfigError(f"Unknown model {uri!r}. Known: {KNOWN}.")
+
+
+def create_local_model(uri: str) -> Model | None:
+    """Make a model that needs no server; None if the URI is not that of one."""
+    prefix, _, rest = uri.partition(":")
+    if uri in ("baseline", "baseline:ocr"):
+        from adamo_vh.inference.baseline import BaselineModel
+
+        return BaselineModel(ocr=uri == "baseline:ocr")
+    if prefix == "random":
+        from adamo_vh.inference.random_calls import RandomModel
+
+        return RandomModel(_seed(uri, rest))
+    if prefix == "scripted" and rest:
+        from adamo_vh.inference.scripted import ScriptedModel, load_script
+
+        return ScriptedModel(uri, load_script(rest))
+    if prefix == "cassette" and rest:
+        from adamo_vh.inference.cassette import Cassette
+
+        return Cassette(rest)
+    return None
+
+
+def _seed(uri: str, text: str) -> int:
+    try:
+        return int(text or "0")
+    except ValueError:
+        raise ModelConfigError(f"{uri}: the seed is a whole number, e.g. random:7.") from None
+
+
+def _remote_model(
+    uri: str, retry: RetryPolicy | None, tools: str, *, several_calls: bool, cache: bool
+) -> Model:
+    from adamo_vh.inference.capabilities import load_capabilities
+    from adamo_vh.inference.endpoint import check_remote_allowed, parse_endpoint
+    from adamo_vh.inference.ladder import Ladder
+    from adamo_vh.inference.provider import ProviderModel
+
+    check_remote_allowed(parse_endpoint(uri))
+    known = load_capabilities(uri)
+    if known is None and tools == AUTO:
+        known = probe_and_keep(uri, retry)
+    refused = known.refused if known else ()
+    model = ProviderModel(uri, retry, refused, several_calls=several_calls, cache=cache)
+    rung = known.rung if known and tools == AUTO else _RUNGS[tools]
+    return Ladder(model, rung, known)
+
+
+def probe_and_keep(uri: str, retry: RetryPolicy | None = None) -> Capabilities:
+    """Probe a remote model and keep what was found out for the next time.
+
+    Raises:
+        ModelConfigError: The URI, the provider's package or its key is wrong or missing.
+        ModelError: The model cannot be reached; nothing is kept.
+    """
+    from adamo_vh.inference.capabilities import save_capabilities
+    from adamo_vh.inference.probe import probe
+
+    check_remote_uri(uri)
+    found = probe(uri, retry)
+    save_capabilities(found)
+    return found
+
+
+def _is_known_provider(prefix: str) -> bool:
+    from adamo_vh.inference.endpoint import is_known_provider
+
+    return is_known_provider(prefix)

@@ -1,0 +1,154 @@
+"""Keep built assets on disk, so that only the first run pays for the modelling.
+
+The cache lies in the user's cache folder, or in ADAMO_VH_CACHE_DIR. Its key covers the sources of
+the assets and the libraries they are made with: a change of either builds anew.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Callable
+from dataclasses import asdict
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from adamo_vh.runtime.assets import catalog
+from adamo_vh.runtime.assets.asset import Asset, Collider, Looks, Material, Part, Surface
+
+_LIBRARIES = ("manifold3d", "numpy", "pillow", "scipy", "trimesh")
+_MESH_ARRAYS = ("vertices", "normals", "uvs", "faces")
+_DAMAGE = (
+    OSError,
+    EOFError,
+    ValueError,
+    KeyError,
+    TypeError,
+    # From zipfile: a flipped bit may ask for a compression or an encryption it does not know.
+    RuntimeError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What reading a missing, damaged or foreign file may raise."""
+
+
+def load_asset(name: str) -> Asset:
+    """Return an asset from the cache, or build and cache it.
+
+    A missing, damaged or unwritable cache only costs time.
+
+    Args:
+        name: A key of `catalog.OBJECTS` or `catalog.FURNITURE`.
+
+    Raises:
+        KeyError: If no asset has this name.
+    """
+    return load_built(name, lambda: catalog.build(name))
+
+
+def load_built(name: str, build: Callable[[], Asset]) -> Asset:
+    """Return what a builder made before, or build and cache it.
+
+    Args:
+        name: Names the asset and everything that the builder depends on; a file name.
+        build: Makes it.
+    """
+    path = cache_file(name)
+    with contextlib.suppress(*_DAMAGE):
+        return _read(path)
+    asset = build()
+    with contextlib.suppress(OSError):
+        _write(asset, path)
+    return asset
+
+
+def cache_file(name: str) -> Path:
+    """Where the baked asset lies, or will lie."""
+    folder = os.environ.get("ADAMO_VH_CACHE_DIR")
+    if not folder:
+        import platformdirs
+
+        folder = platformdirs.user_cache_dir("adamo-vh")
+    return Path(folder) / "assets" / _key() / f"{name}.npz"
+
+
+@cache
+def _key() -> str:
+    """Hash of everything a baked asset depends on."""
+    digest = hashlib.sha256()
+    sources = Path(__file__).parent
+    for path in sorted(sources.rglob("*")):
+        if path.is_file() and "__pycache__" not in path.parts:
+            digest.update(path.relative_to(sources).as_posix().encode())
+            digest.update(path.read_bytes())
+    for library in _LIBRARIES:
+        digest.update(f"{library} {version(library)}".encode())
+    return digest.hexdigest()[:16]
+
+
+def _write(asset: Asset, path: Path) -> None:
+    """Write beside the file and rename: a reader never sees half a file."""
+    arrays: dict[str, Any] = {}
+    materials = []
+    for i, part in enumerate(asset.parts):
+        arrays |= {f"{key}{i}": getattr(part, key) for key in _MESH_ARRAYS}
+        material = {f: getattr(part.material, f) for f in Material.__dataclass_fields__}
+        texture = material.pop("texture")
+        if texture is not None:
+            arrays[f"texture{i}"] = texture
+        materials.append(material)
+    facts = {
+        "class_name": asset.class_name,
+        "size": asset.size,
+        "mass_kg": asset.mass_kg,
+        "materials": materials,
+        "colliders": [asdict(collider) for collider in asset.colliders],
+        "surfaces": [asdict(surface) for surface in asset.surfaces],
+        "looks": asdict(asset.looks),
+    }
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            np.savez(file, facts=np.array(json.dumps(facts)), **arrays)
+        os.replace(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def _read(path: Path) -> Asset:
+    with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
+        facts = json.loads(str(file["facts"]))
+        parts = []
+        for i, material in enumerate(facts["materials"]):
+            texture = file.get(f"texture{i}")
+            arrays = {key: file[f"{key}{i}"] for key in _MESH_ARRAYS}
+            parts.append(Part(**arrays, material=Material(**_frozen(material), texture=texture)))
+    return Asset(
+        class_name=facts["class_name"],
+        size=_frozen(facts["size"]),
+        parts=tuple(parts),
+        colliders=tuple(Collider(**_frozen(c)) for c in facts["colliders"]),
+        mass_kg=facts["mass_kg"],
+        looks=Looks(**_frozen(facts["looks"])),
+        surfaces=tuple(Surface(**_frozen(s)) for s in facts["surfaces"]),
+    )
+
+
+def _frozen(value: Any) -> Any:
+    """JSON's lists back to the tuples they were."""
+    if isinstance(value, list):
+        return tuple(_frozen(item) for item in value)
+    if isinstance(value, dict):
+        return {key: _frozen(item) for key, item in value.items()}
+    return value

@@ -1,0 +1,155 @@
+"""Put an asset on a MuJoCo body: meshes and textures straight from memory, no files.
+
+Visual meshes are drawn and never collide (geom group 1); collision primitives carry the mass, are
+not drawn and stay visible to rays (geom group 3).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adamo_vh.runtime.assets.asset import Asset, Collider, Material, Part
+
+if TYPE_CHECKING:
+    import mujoco
+
+VISUAL_GROUP = 1
+"""Geom group of what is drawn."""
+COLLISION_GROUP = 3
+"""Geom group of what collides; MuJoCo does not draw it by default."""
+SHADOW_ALPHA = 0.4
+"""Thinner parts cast no shadow: MuJoCo would draw that of clear glass as dark as any."""
+
+_FRICTION = (0.9, 0.01, 0.0005)
+_COLLIDER_RGBA = (0.1, 0.8, 0.3, 0.3)
+
+
+def add_asset(
+    spec: mujoco.MjSpec,
+    body: mujoco.MjsBody,
+    asset: Asset,
+    name: str,
+    *,
+    collide: bool = True,
+) -> None:
+    """Add an asset's meshes, textures, materials and geoms; the body's frame is the asset's.
+
+    Args:
+        spec: The model being built.
+        body: Where the geoms go.
+        asset: What to add.
+        name: Prefix of everything added, unique in the model.
+        collide: Add the collision primitives and with them the mass. Without, the body is a ghost.
+    """
+    for i, part in enumerate(asset.parts):
+        _add_visual(spec, body, part, f"{name}/{i}_{part.material.name}")
+    if not collide:
+        return
+    volumes = [volume_m3(collider) for collider in asset.colliders]
+    for i, (collider, volume) in enumerate(zip(asset.colliders, volumes, strict=True)):
+        mass_kg = asset.mass_kg * volume / sum(volumes)
+        _add_collider(body, collider, mass_kg, f"{name}/collider{i}")
+
+
+def volume_m3(collider: Collider) -> float:
+    """Volume of a collision primitive."""
+    a, b, c = collider.size
+    match collider.shape:
+        case "box":
+            return 8 * a * b * c
+        case "cylinder":
+            return 2 * math.pi * a * a * b
+        case "capsule":
+            return math.pi * a * a * (2 * b + 4 / 3 * a)
+        case "sphere":
+            return 4 / 3 * math.pi * a**3
+        case "ellipsoid":
+            return 4 / 3 * math.pi * a * b * c
+    raise ValueError(f"unknown collider shape {collider.shape!r}")
+
+
+def _add_visual(spec: mujoco.MjSpec, body: mujoco.MjsBody, part: Part, name: str) -> None:
+    import mujoco
+
+    mesh = spec.add_mesh(name=name)
+    mesh.uservert = part.vertices.ravel()
+    mesh.usernormal = part.normals.ravel()
+    mesh.usertexcoord = part.uvs.ravel()
+    mesh.userface = _back_to_front(part).ravel()
+    # Thin and open surfaces have no volume; a shell's inertia always exists. MuJoCo moves the mesh
+    # to its principal axes and the geom back, so the vertices stay where they were.
+    mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+    add_material(spec, part.material, name)
+    body.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_MESH,
+        meshname=name,
+        material=name,
+        contype=0,
+        conaffinity=0,
+        group=VISUAL_GROUP,
+        mass=0.0,
+        castshadow=part.material.rgba[3] >= SHADOW_ALPHA,
+    )
+
+
+def _back_to_front(part: Part) -> NDArray[np.int32]:
+    """(M, 3) faces in drawing order: of glass, the inside before the outside.
+
+    MuJoCo draws a mesh's faces in their order and with depth, so a wall that is drawn too early
+    hides what should shine through it. From any side, inner walls lie behind outer ones.
+    """
+    if part.material.rgba[3] == 1.0:
+        return part.faces
+    a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
+    middle = (part.vertices.min(axis=0) + part.vertices.max(axis=0)) / 2
+    outward = np.einsum("ij,ij->i", np.cross(b - a, c - a), (a + b + c) / 3 - middle)
+    return part.faces[np.argsort(outward > 0, kind="stable")]
+
+
+def add_material(spec: mujoco.MjSpec, material: Material, name: str) -> None:
+    """Add a material, with its texture if it has one, under a name that is unique in the model."""
+    import mujoco
+
+    made = spec.add_material(
+        name=name,
+        rgba=material.rgba,
+        specular=material.specular,
+        shininess=material.shininess,
+        reflectance=material.reflectance,
+        emission=material.emission,
+    )
+    if material.texture is None:
+        return
+    height, width, channels = material.texture.shape
+    texture = spec.add_texture(
+        name=name,
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        width=width,
+        height=height,
+        nchannel=channels,
+    )
+    # MuJoCo wants the bottom row first.
+    texture.data = material.texture[::-1].tobytes()
+    made.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
+
+
+def _add_collider(body: mujoco.MjsBody, collider: Collider, mass_kg: float, name: str) -> None:
+    import mujoco
+
+    body.add_geom(
+        name=name,
+        type=getattr(mujoco.mjtGeom, f"mjGEOM_{collider.shape.upper()}"),
+        size=collider.size,
+        pos=collider.position,
+        quat=collider.quaternion,
+        group=COLLISION_GROUP,
+        mass=mass_kg,
+        condim=4,
+        friction=_FRICTION,
+        rgba=_COLLIDER_RGBA,
+    )

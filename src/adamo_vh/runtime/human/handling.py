@@ -1,0 +1,160 @@
+"""Taking a thing and putting it down: the body bends, the hand goes out and comes back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from adamo_vh.geometry import Array, Vec3
+from adamo_vh.runtime.human.anatomy import eyes, grip, turned
+from adamo_vh.runtime.human.ik import arm_to
+from adamo_vh.runtime.human.postures import CARRY, carrying, gazing, holding, standing
+from adamo_vh.runtime.human.reach import open_hand, stretched
+from adamo_vh.runtime.human.rotations import blended, eased
+from adamo_vh.runtime.human.skeleton import INDEX, Pose, joint_frames
+from adamo_vh.runtime.human.stretch import Bend, Stretch, stretch_to
+
+_GRASP_S = 0.36
+"""How long the hand stays at the target to close or open."""
+_ON_THE_WAY_M = (0.88, 1.02, 1.14, 1.32)
+"""Height of the hand in front of the body, on its way to 0.7, 1.0, 1.3 and 2.0 m."""
+_ARM = [INDEX[n] for n in ("upper_arm_r", "forearm_r", "hand_r")]
+_FINGERS = INDEX["fingers_r"]
+
+
+@dataclass(frozen=True)
+class Handling:
+    """A reach of the right hand to a target and back, for a body that faces it."""
+
+    target: Array
+    """(3,) in the body frame, metres."""
+    gaze: Array
+    """(3,) direction of the gaze before and after, in the body frame."""
+    takes: bool
+    """Whether the hand comes back full; else it goes out full."""
+    size: Vec3 | None = None
+    """Edge lengths of the thing."""
+
+    @cached_property
+    def stretch(self) -> Stretch:
+        """How the body bends for it."""
+        return stretch_to(*(float(v) for v in self.target))
+
+    @cached_property
+    def way_s(self) -> float:
+        """Time for the way out, and for the way back."""
+        bends = self.stretch.bends
+        steps = float(np.count_nonzero(bends[[Bend.STEP, Bend.FOLLOW]] > 0.01))
+        far = float(np.linalg.norm(self.target - CARRY))
+        high = max(0.0, float(self.target[2]) - 1.2)
+        return 0.7 + 0.35 * far + 0.8 * abs(float(bends[Bend.UP])) + 0.3 * steps + 0.4 * high
+
+    @property
+    def event_s(self) -> float:
+        """When the hand grasps or lets go."""
+        return self.way_s + _GRASP_S / 2
+
+    @property
+    def duration_s(self) -> float:
+        """From standing to standing."""
+        return 2 * self.way_s + _GRASP_S
+
+    def pose(self, time_s: float) -> Pose:
+        """The posture at a time, in the body frame."""
+        back = time_s > self.event_s
+        # Linear progress of the way: 0 at home, 1 at the target.
+        part = min(1.0, (self.duration_s - time_s if back else time_s) / self.way_s)
+        bend = self._bend(part)
+        body = stretched(self._standing, self.stretch, bend, part)
+        body = self._watching(body, bend)
+        full = back == self.takes
+        arm = self._arm(body, part, full)
+        rotations = body.rotations.copy()
+        rotations[_ARM] = arm.rotations[_ARM]
+        rotations[_FINGERS] = self._fingers(time_s, part, full)
+        return Pose(rotations, body.pelvis_shift)
+
+    @staticmethod
+    def _bend(part: float) -> float:
+        """How far the body is bent; the hand leaves first, so that it clears the table's edge."""
+        return float(eased((part - 0.07) / 0.88))
+
+    def _watching(self, body: Pose, bend: float) -> Pose:
+        """Eyes on the target, from wherever the head has come to."""
+        line = self.target - eyes(body)
+        line = self.gaze * (1.0 - bend) + line / np.linalg.norm(line) * bend
+        return gazing(body, line, torso=1.0 - bend)
+
+    def _arm(self, body: Pose, part: float, full: bool) -> Pose:
+        """The right arm: it leaves home, and meets the target at the end of the way."""
+        along = float(eased(part))
+        base = self._home(full)
+        # The arc is drawn for a body that stands, and goes along with the shoulder as it bends;
+        # so the hand never comes too close to the shoulder.
+        goal = self.target - (_shoulder(self._bent) - _shoulder(base))
+        way = _arc(grip(base), goal, float(self.target[2]), along)
+        way += _shoulder(body) - _shoulder(base)
+        home = holding(self.size) if full else open_hand()  # both with a straight wrist
+        there = open_hand(float(self.target[2]))
+        wrist = blended(home["hand_r"], there["hand_r"], along)
+        solved, _ = arm_to(turned(body, {"hand_r": wrist}), way)
+        if full:
+            return solved
+        weight = float(eased(part / 0.6))
+        rotations = blended(body.rotations, solved.rotations, weight)
+        return Pose(rotations, body.pelvis_shift)
+
+    @cached_property
+    def _standing(self) -> Pose:
+        return standing()
+
+    @cached_property
+    def _bent(self) -> Pose:
+        return stretched(self._standing, self.stretch)
+
+    @cached_property
+    def _homes(self) -> tuple[Pose, Pose]:
+        empty = gazing(self._standing, self.gaze)
+        return empty, carrying(empty, self.size)
+
+    def _home(self, full: bool) -> Pose:
+        """The posture before or after, with an empty or a full hand."""
+        return self._homes[1 if full else 0]
+
+    def _fingers(self, time_s: float, part: float, full: bool) -> Array:
+        """Local rotation of the fingers: open before the grasp, closed around the thing."""
+        relaxed = self._standing.rotations[_FINGERS]
+        closed, opened = holding(self.size)["fingers_r"], open_hand()["fingers_r"]
+        if part < 1.0 and full:
+            return closed
+        if part < 1.0:
+            return blended(relaxed, opened, float(eased(part / 0.7)))
+        done = float(eased((time_s - self.way_s) / _GRASP_S))
+        return blended(opened, closed, done if self.takes else 1.0 - done)
+
+
+def _shoulder(pose: Pose) -> Array:
+    return np.asarray(joint_frames(pose)[0][INDEX["upper_arm_r"]])
+
+
+def _arc(start: Array, goal: Array, height_m: float, along: float) -> Array:
+    """A point on the way of the hand, which meets the target from the side that is free.
+
+    Args:
+        start: (3,) where the hand is at home.
+        goal: (3,) where it goes, relative to a body that stands.
+        height_m: Height of the target above the floor: things on the floor and on tables are met
+            from above, those in shelves from the front.
+        along: 0 at the start, 1 at the goal.
+    """
+    aside = 0.5 * (start[1] + goal[1]) - 0.06 * float(eased(height_m - 1.0))  # not past the face
+    front = max(0.42, 0.45 * float(goal[0]))
+    first = np.array([front, aside, np.interp(goal[2], [0.7, 1.0, 1.3, 2.0], _ON_THE_WAY_M)])
+    forward = float(np.interp(height_m, [0.3, 0.8, 1.2], [0.9, 0.75, 0.55]))
+    above = float(np.interp(height_m, [0.1, 0.7, 1.0, 1.2], [0.22, 0.14, 0.12, -0.02]))
+    last = np.array([forward * goal[0], 0.2 * aside + 0.8 * goal[1], goal[2] + above])
+    rest = 1.0 - along
+    ends = rest**3 * start + along**3 * goal
+    return np.asarray(ends + 3 * rest * along * (rest * first + along * last))

@@ -1,0 +1,175 @@
+"""Plan-view geometry: oriented rectangles with a height range, their distances and overlaps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adamo_vh.geometry import Array, Box, Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """An upright prism over an oriented rectangle: how placement and navigation see things."""
+
+    x: float
+    y: float
+    half_x: float
+    half_y: float
+    yaw_rad: float
+    z_min: float
+    z_max: float
+
+    @classmethod
+    def around(cls, box: Box) -> Solid:
+        """The prism that holds an oriented box, aligned with its heading."""
+        yaw = box.orientation.yaw_rad
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        corners = box.corners()
+        offset = corners[:, :2] - [box.center.x, box.center.y]
+        along, across = offset @ [cos, sin], offset @ [-sin, cos]
+        return cls(
+            box.center.x,
+            box.center.y,
+            float(np.abs(along).max()),
+            float(np.abs(across).max()),
+            yaw,
+            float(corners[:, 2].min()),
+            float(corners[:, 2].max()),
+        )
+
+    def moved(self, x: float, y: float, z_min: float) -> Solid:
+        """The same prism with its centre at another place and its bottom at `z_min`."""
+        height = self.z_max - self.z_min
+        return Solid(x, y, self.half_x, self.half_y, self.yaw_rad, z_min, z_min + height)
+
+    def distance(self, points: Array) -> Array:
+        """Horizontal distance of points from the rectangle; 0 inside.
+
+        Args:
+            points: (N, 2) metres.
+
+        Returns:
+            (N,) metres.
+        """
+        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        offset = points - np.array([self.x, self.y])
+        along = np.abs(offset @ [cos, sin]) - self.half_x
+        across = np.abs(offset @ [-sin, cos]) - self.half_y
+        return np.asarray(np.hypot(np.maximum(along, 0), np.maximum(across, 0)))
+
+    def overlaps_height(self, z_min: float, z_max: float) -> bool:
+        """Whether the height ranges share more than 2 mm."""
+        return self.z_min < z_max - 0.002 and self.z_max > z_min + 0.002
+
+    @property
+    def radius_m(self) -> float:
+        """Radius of the upright cylinder around the centre that holds the prism, metres."""
+        return math.hypot(self.half_x, self.half_y)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solids:
+    """Many prisms at once, as arrays: a room has more than a hundred."""
+
+    centres: Array
+    """(S, 3) middles in metres."""
+    halves: Array
+    """(S, 3) half extents along the own axes, metres."""
+    axes: Array
+    """(S, 2) cosine and sine of the headings."""
+
+    @classmethod
+    def of(cls, solids: Sequence[Solid]) -> Solids:
+        """Gather prisms."""
+        rows = [
+            (s.x, s.y, (s.z_min + s.z_max) / 2, s.half_x, s.half_y, (s.z_max - s.z_min) / 2)
+            for s in solids
+        ]
+        table = np.array(rows, dtype=np.float64).reshape(-1, 6)
+        yaw = np.array([s.yaw_rad for s in solids], dtype=np.float64)
+        return cls(table[:, :3], table[:, 3:], np.stack([np.cos(yaw), np.sin(yaw)], axis=1))
+
+    def distance(self, points: Array) -> Array:
+        """Horizontal distance of points from the nearest rectangle; 0 inside one.
+
+        Args:
+            points: (N, 2) metres.
+
+        Returns:
+            (N,) metres; infinity where there are no solids.
+        """
+        cos, sin = self.axes.T
+        dx = points[:, :1] - self.centres[:, 0]
+        dy = points[:, 1:] - self.centres[:, 1]
+        along = np.maximum(np.abs(dx * cos + dy * sin) - self.halves[:, 0], 0.0)
+        across = np.maximum(np.abs(dy * cos - dx * sin) - self.halves[:, 1], 0.0)
+        squares = along * along + across * across
+        return np.asarray(np.sqrt(squares.min(axis=1, initial=np.inf)))
+
+    def hold(self, points: Array, skin_m: float) -> NDArray[np.bool_]:
+        """Whether points are inside any prism, not counting a skin.
+
+        Args:
+            points: (N, 3) metres.
+            skin_m: How far below the surface inside begins.
+
+        Returns:
+            (N,) true for what is inside.
+        """
+        half = self.halves - skin_m
+        return np.array([(np.abs(self._local(p)) < half).all(axis=1).any() for p in points])
+
+    def block(self, start: Vec3, end: Vec3) -> bool:
+        """Whether a straight line passes through any prism, not counting a skin of 1 cm."""
+        half = self.halves - 0.01
+        a, b = self._local(start.array()), self._local(end.array())
+        along = np.where(np.abs(b - a) < 1e-9, 1e-9, b - a)
+        enter, leave = (-half - a) / along, (half - a) / along
+        first = np.minimum(enter, leave).max(axis=1)
+        last = np.maximum(enter, leave).min(axis=1)
+        passes = (half > 0).all(axis=1) & (first < last) & (first < 1) & (last > 0)
+        return bool(passes.any())
+
+    def _local(self, point: Array) -> Array:
+        """(S, 3) a point, (3,), in each prism's own frame."""
+        cos, sin = self.axes.T
+        offset = point - self.centres
+        x, y = offset[:, 0], offset[:, 1]
+        return np.stack([x * cos + y * sin, y * cos - x * sin, offset[:, 2]], axis=1)
+
+
+def gaps(candidates: Array, shape: Solid, obstacles: list[Solid]) -> Array:
+    """How far a rectangle stays from obstacles when its centre is put at each candidate.
+
+    The separating axis test on both rectangles' axes: positive values are lower bounds of the gap,
+    negative ones mean overlap.
+
+    Args:
+        candidates: (N, 2) centres in metres.
+        shape: The rectangle to place; its own position does not matter.
+        obstacles: What to stay clear of.
+
+    Returns:
+        (N,) metres; infinity where there are no obstacles.
+    """
+    smallest = np.full(len(candidates), np.inf)
+    own = _axes(shape.yaw_rad)
+    for other in obstacles:
+        theirs = _axes(other.yaw_rad)
+        axes = np.concatenate([own, theirs])
+        extent = np.abs(axes @ own.T) @ [shape.half_x, shape.half_y]
+        extent = extent + np.abs(axes @ theirs.T) @ [other.half_x, other.half_y]
+        offset = candidates - np.array([other.x, other.y])
+        apart = (np.abs(offset @ axes.T) - extent).max(axis=1)
+        smallest = np.minimum(smallest, apart)
+    return smallest
+
+
+def _axes(yaw_rad: float) -> NDArray[np.float64]:
+    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
+    return np.array([[cos, sin], [-sin, cos]])

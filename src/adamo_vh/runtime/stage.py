@@ -1,0 +1,186 @@
+"""What can be seen: the figure in its posture, the thing in its hand, and pictures of both.
+
+The engine's logic decides states; the stage shows them, also the moments between two states. It
+never changes how an action ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adamo_vh.geometry import Camera, Vec3
+from adamo_vh.observation import Percept, SeenObject
+from adamo_vh.runtime import physics
+from adamo_vh.runtime.embodiment import Body
+from adamo_vh.runtime.human.motion import BodyFrame, Motion, idle
+from adamo_vh.runtime.human.postures import at_rest
+from adamo_vh.runtime.human.skin_mujoco import pose_human
+from adamo_vh.runtime.rendering import SceneRenderer
+from adamo_vh.runtime.world import World
+
+FRAMES_PER_S = 15
+_OFF_THE_WALL_M = 0.005
+"""How near a held thing comes to a wall."""
+
+Watcher = Callable[[float], bool]
+"""Is called for every shown moment with the simulated seconds since the action began; what it draws
+then is that moment. Returns False to stop the action there."""
+
+
+class Stage:
+    """Shows one world."""
+
+    def __init__(self, world: World) -> None:
+        """Prepare; graphics are opened when the first picture is drawn."""
+        self._world = world
+        self._renderer: SceneRenderer | None = None
+        self._moment: BodyFrame | None = None
+        self._last: tuple[object, Percept] | None = None
+        self.watcher: Watcher | None = None
+
+    @property
+    def renderer(self) -> SceneRenderer:
+        """What draws the world."""
+        if self._renderer is None:
+            self._renderer = SceneRenderer(self._world.model, self._world.object_of_geom)
+        return self._renderer
+
+    def _standing(self, body: Body) -> BodyFrame:
+        """The figure between actions."""
+        return BodyFrame(body, at_rest(body, self._size(body.held)))
+
+    def hand(self, body: Body) -> Vec3:
+        """Where the hand of a standing figure is, and with it what it holds."""
+        return self.held_at(self._standing(body))
+
+    def held_at(self, frame: BodyFrame) -> Vec3:
+        """Where the middle of the held thing is: in the hand, but never in a wall."""
+        held, hand = frame.body.held, frame.hand
+        if held is None:
+            return hand
+        box, room = self._world.box(held), self._world.room
+        half = np.abs(box.orientation.matrix()) @ box.size.array() / 2 + _OFF_THE_WALL_M
+        x = min(max(hand.x, room.x_min + half[0]), room.x_max - half[0])
+        y = min(max(hand.y, room.y_min + half[1]), room.y_max - half[1])
+        return Vec3(float(x), float(y), hand.z)
+
+    def _within_walls(self, frame: BodyFrame) -> BodyFrame:
+        """The figure with its hand drawn in where a wall is in the way of what it holds."""
+        if frame.body.held is None:
+            return frame
+        hand = self.held_at(frame)
+        return frame if hand == frame.hand else frame.with_hand_at(hand)
+
+    def _size(self, object_id: int | None) -> Vec3 | None:
+        return None if object_id is None else self._world.objects[object_id].size
+
+    def view(self, body: Body, camera: Camera, *, from_the_eyes: bool) -> Percept:
+        """Draw the world as it is, with the figure in it. An unchanged view is not drawn twice.
+
+        Args:
+            body: The state of the body.
+            camera: From where.
+            from_the_eyes: The camera is in the head, which must not hide the view.
+        """
+        shown = self.shown(body)
+        qpos = self._world.data.qpos.tobytes()
+        key = (camera, from_the_eyes, shown.body, self._moment is None, qpos)
+        if self._moment is None and self._last is not None and self._last[0] == key:
+            return self._last[1]
+        percept = self._percept(shown, camera, head=not from_the_eyes, shadow=True)
+        self._last = (key, percept)
+        return percept
+
+    def detail(self, body: Body, camera: Camera) -> Percept:
+        """Draw a small part of the view from the eyes, without shadows, which show little there."""
+        return self._percept(self.shown(body), camera, head=False, shadow=False)
+
+    def _percept(self, shown: BodyFrame, camera: Camera, *, head: bool, shadow: bool) -> Percept:
+        data = self._world.data
+        self._pose(shown)
+        rgb = self.renderer.color(data, camera, head=head, shadow=shadow)
+        layers = self.renderer.layers(data, camera, head=head)
+        present = frozenset[int]().union(*(layer.present for layer in layers))
+        seen = {
+            i: SeenObject(i, self._world.objects[i].class_name, self._world.box(i))
+            for i in sorted(present)
+        }
+        return Percept(rgb, tuple(layer.ids for layer in layers), seen, shown.body.state(), camera)
+
+    def picture(self, body: Body, camera: Camera, *, head: bool = True) -> NDArray[np.uint8]:
+        """Only the colour picture of this moment, (H, W, 3); without the head to look out of it."""
+        self._pose(self.shown(body))
+        return self.renderer.color(self._world.data, camera, head=head)
+
+    def shown(self, body: Body) -> BodyFrame:
+        """What is to be seen now: a moment of an action, or the figure between actions."""
+        return self._within_walls(self._moment or self._standing(body))
+
+    @contextmanager
+    def idling(self, body: Body, seconds: float) -> Iterator[None]:
+        """Show the figure some seconds into standing still: it breathes and blinks."""
+        self._moment = idle(body, seconds, self._size(body.held))
+        try:
+            yield
+        finally:
+            self._moment = None
+
+    def forget(self) -> None:
+        """Draw the next view even if nothing changed."""
+        self._last = None
+
+    def perform(
+        self,
+        end: Body,
+        make: Callable[[], Motion],
+        thing: int | None = None,
+        rest: Vec3 | None = None,
+    ) -> Body:
+        """Let an action be watched, if somebody watches.
+
+        Args:
+            end: The body when it is done.
+            make: Makes the motion to that end; costly, so it is asked only if it is watched.
+            thing: What is taken, put down or carried meanwhile.
+            rest: Where it is put down.
+
+        Returns:
+            The body at the end of the motion, or where the watcher stopped it.
+        """
+        if self.watcher is None:
+            return end
+        motion = make()
+        data = self._world.data
+        kept = data.qpos.copy()
+        moments = np.arange(0.0, motion.duration_s, 1.0 / FRAMES_PER_S)
+        try:
+            for seconds in (*moments.tolist(), motion.duration_s):
+                self._moment = motion.at(seconds)
+                if thing is not None and self._moment.body.held == thing:
+                    physics.place(self._world, thing, self.held_at(self._moment))
+                elif thing is not None and rest is not None:
+                    physics.place(self._world, thing, rest)
+                if not self.watcher(seconds):
+                    return motion.body_at(seconds)
+        finally:
+            self._moment = None
+            data.qpos[:] = kept
+        return end
+
+    def _pose(self, shown: BodyFrame) -> None:
+        import mujoco
+
+        pose_human(self._world.model, self._world.data, *shown.joints())
+        mujoco.mj_kinematics(self._world.model, self._world.data)
+        mujoco.mj_camlight(self._world.model, self._world.data)
+
+    def close(self) -> None:
+        """Free graphics memory."""
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
+            self._last = None

@@ -1,0 +1,326 @@
+"""From a scene to a compiled MuJoCo world, and the plain tables that the rest reads."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adamo_vh.engine import FLOOR
+from adamo_vh.geometry import Box, Quaternion, Vec3
+from adamo_vh.observation import NOTHING
+from adamo_vh.runtime.assets.asset import Asset, Collider
+from adamo_vh.runtime.embodiment import FOV_Y_RAD
+from adamo_vh.runtime.human.looks import Figure
+from adamo_vh.runtime.scenes.scene import Furniture, Light, PlacedObject, Room, Scene
+from adamo_vh.runtime.solids import Solid
+
+if TYPE_CHECKING:
+    import mujoco
+
+TIME_STEP_S = 0.002
+ROOM = "room"
+"""Body that carries floor, walls and ceiling."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorldObject:
+    """Where an interactable object is found in the model."""
+
+    id: int
+    class_name: str
+    size: Vec3
+    body: int
+    qpos: int
+    """First of its 7 position coordinates."""
+    qvel: int
+    """First of its 6 velocity coordinates."""
+    geoms: tuple[int, ...]
+    """Those that collide."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorldSurface:
+    """A horizontal rectangle in the world that carries things."""
+
+    support: str
+    """Name that feedback and states use: "table", "shelf/top", "floor"."""
+    center: Vec3
+    half_x: float
+    half_y: float
+    yaw_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A compiled world."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    room: Room
+    objects: dict[int, WorldObject]
+    surfaces: tuple[WorldSurface, ...]
+    solids: tuple[Solid, ...]
+    """What static furniture occupies, collider by collider."""
+    furniture_of_body: dict[int, str]
+    object_of_geom: NDArray[np.int16]
+    start_qpos: NDArray[np.float64]
+    """As placed by the scene, before settling."""
+
+    def box(self, object_id: int) -> Box:
+        """The box of an object now."""
+        item = self.objects[object_id]
+        q = self.data.qpos[item.qpos : item.qpos + 7]
+        turn = Quaternion(*(float(v) for v in q[3:7]))
+        return Box(Vec3.of(q[:3]), item.size, turn)
+
+
+def scene_assets(scene: Scene) -> dict[str, Asset]:
+    """Every asset that a scene names, loaded once."""
+    from adamo_vh.runtime.assets.bake import load_asset
+
+    names = {item.asset for item in scene.furniture} | {item.asset for item in scene.objects}
+    return {name: load_asset(name) for name in sorted(names)}
+
+
+def build_world(scene: Scene, figure: Figure, assets: Mapping[str, Asset] | None = None) -> World:
+    """Compile a scene with a person in it.
+
+    Args:
+        scene: What is where.
+        figure: The person.
+        assets: Every asset that the scene names; are loaded if not given.
+
+    Raises:
+        SceneError: An object lies on a level that its furniture does not have.
+    """
+    import mujoco
+
+    from adamo_vh.runtime.assets.mujoco_parts import add_asset
+    from adamo_vh.runtime.human.skin_mujoco import add_human
+
+    if assets is None:
+        assets = scene_assets(scene)
+    spec = _empty_spec()
+    shell = load_room(scene)
+    walls = spec.worldbody.add_body(name=ROOM)
+    add_asset(spec, walls, shell, ROOM)
+    _cast_no_shadow(walls)
+    surfaces, solids = _furnish(spec, scene, assets)
+    for item in scene.objects:
+        _add_object(spec, item, assets[item.asset], surfaces)
+    for light in scene.lights:
+        _add_light(spec, light)
+    add_human(spec, figure)
+    model = spec.compile()
+    del spec
+    _return_memory()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    placed = sorted(scene.objects, key=lambda item: item.id)
+    objects = {item.id: _locate(model, item.id, assets[item.asset]) for item in placed}
+    object_of_geom = np.full(model.ngeom, NOTHING, np.int16)
+    for world_object in objects.values():
+        object_of_geom[model.geom_bodyid == world_object.body] = world_object.id
+    furniture_of_body = {model.body(p.name).id: p.name for p in scene.furniture}
+    return World(
+        model,
+        data,
+        scene.room,
+        objects,
+        tuple(surfaces),
+        tuple(solids),
+        furniture_of_body,
+        object_of_geom,
+        data.qpos.copy(),
+    )
+
+
+def _furnish(
+    spec: mujoco.MjSpec, scene: Scene, assets: Mapping[str, Asset]
+) -> tuple[list[WorldSurface], list[Solid]]:
+    """Put the furniture in.
+
+    Returns:
+        What carries things, the floor first, and what the furniture occupies.
+    """
+    from adamo_vh.runtime.assets.mujoco_parts import add_asset
+
+    room = scene.room
+    surfaces = [
+        WorldSurface(
+            FLOOR,
+            Vec3((room.x_min + room.x_max) / 2, (room.y_min + room.y_max) / 2, 0.0),
+            (room.x_max - room.x_min) / 2,
+            (room.y_max - room.y_min) / 2,
+            0.0,
+        )
+    ]
+    solids: list[Solid] = []
+    for piece in scene.furniture:
+        asset = assets[piece.asset]
+        yaw = math.radians(piece.yaw_deg)
+        body = spec.worldbody.add_body(
+            name=piece.name, pos=[*piece.position, 0.0], quat=Quaternion.from_yaw(yaw).array()
+        )
+        add_asset(spec, body, asset, piece.name)
+        if not asset.colliders:
+            _cast_no_shadow(body)
+        surfaces += furniture_surfaces(piece, asset)
+        solids += furniture_solids(piece, asset)
+    return surfaces, solids
+
+
+def _return_memory() -> None:
+    """Give back what compiling took: glibc keeps some 60 MB of it otherwise."""
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL("libc.so.6").malloc_trim(0)
+
+
+def _cast_no_shadow(body: mujoco.MjsBody) -> None:
+    """Keep a flat thing out of the shadow map, where it would only shade itself, in speckles."""
+    for geom in body.geoms:
+        geom.castshadow = False
+
+
+def load_room(scene: Scene) -> Asset:
+    """The room's shell for a scene."""
+    from adamo_vh.runtime.assets.bake import load_built
+    from adamo_vh.runtime.assets.room import room
+
+    shell = scene.room
+    extent = (shell.x_min, shell.x_max, shell.y_min, shell.y_max, shell.height_m)
+    name = "_".join(["room", *(f"{value:.4f}" for value in extent)])
+    return load_built(name, lambda: room(*extent))
+
+
+def object_body(object_id: int) -> str:
+    """Name of an object's body in the model."""
+    return f"object_{object_id}"
+
+
+def _empty_spec() -> mujoco.MjSpec:
+    import mujoco
+
+    spec = mujoco.MjSpec()
+    spec.option.timestep = TIME_STEP_S
+    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    spec.option.impratio = 10
+    spec.stat.extent = 4.0
+    spec.visual.map.znear = 0.01
+    spec.visual.map.zfar = 5.0
+    spec.visual.global_.fovy = math.degrees(FOV_Y_RAD)
+    spec.visual.global_.offwidth = 1920
+    spec.visual.global_.offheight = 1080
+    spec.visual.headlight.ambient = [0.54, 0.535, 0.53]
+    spec.visual.headlight.diffuse = [0.16, 0.16, 0.16]
+    spec.visual.headlight.specular = [0.0, 0.0, 0.0]
+    return spec
+
+
+def _add_light(spec: mujoco.MjSpec, light: Light) -> None:
+    import mujoco
+
+    direction = np.array(light.target) - np.array(light.position)
+    spec.worldbody.add_light(
+        pos=light.position,
+        dir=direction / np.linalg.norm(direction),
+        type=mujoco.mjtLightType.mjLIGHT_SPOT,
+        cutoff=80.0,
+        exponent=0.6,
+        diffuse=[light.diffuse, light.diffuse * 0.98, light.diffuse * 0.94],
+        specular=[0.15, 0.15, 0.15],
+        ambient=[0.0, 0.0, 0.0],
+        castshadow=light.shadow,
+    )
+
+
+def furniture_surfaces(piece: Furniture, asset: Asset) -> list[WorldSurface]:
+    """What a piece of furniture carries things on, placed in the world."""
+    yaw = math.radians(piece.yaw_deg)
+    turn = Quaternion.from_yaw(yaw).matrix()
+    found = []
+    for surface in asset.surfaces:
+        center = turn @ np.array(surface.center) + [*piece.position, 0.0]
+        several = len(asset.surfaces) > 1
+        name = f"{piece.name}/{surface.name}" if several else piece.name
+        found.append(WorldSurface(name, Vec3.of(center), *surface.half_size, yaw))
+    return found
+
+
+def furniture_solids(piece: Furniture, asset: Asset) -> list[Solid]:
+    """What a piece of furniture occupies, collider by collider."""
+    yaw = math.radians(piece.yaw_deg)
+    return [_solid(collider, piece.position, yaw) for collider in asset.colliders]
+
+
+def _solid(collider: Collider, position: tuple[float, float], yaw_rad: float) -> Solid:
+    """A collider of a piece of furniture, placed in the world."""
+    if collider.shape == "box":
+        half = np.array(collider.size)
+    elif collider.shape == "sphere":
+        half = np.full(3, collider.size[0])
+    elif collider.shape == "ellipsoid":
+        half = np.array(collider.size)
+    else:
+        radius, length = collider.size[:2]
+        length += radius if collider.shape == "capsule" else 0.0
+        half = np.array([radius, radius, length])
+    turn = Quaternion.from_yaw(yaw_rad)
+    center = turn.matrix() @ np.array(collider.position) + [*position, 0.0]
+    local = Box(Vec3(0, 0, 0), Vec3.of(2 * half), Quaternion(*collider.quaternion))
+    flat = Solid.around(local)
+    return Solid(
+        float(center[0]),
+        float(center[1]),
+        flat.half_x,
+        flat.half_y,
+        flat.yaw_rad + yaw_rad,
+        float(center[2]) + flat.z_min,
+        float(center[2]) + flat.z_max,
+    )
+
+
+def _add_object(
+    spec: mujoco.MjSpec, item: PlacedObject, asset: Asset, surfaces: list[WorldSurface]
+) -> None:
+    from adamo_vh.errors import SceneError
+    from adamo_vh.runtime.assets.mujoco_parts import add_asset
+
+    surface = next((s for s in surfaces if s.support == item.on), None)
+    if surface is None:
+        offer = ", ".join(s.support for s in surfaces)
+        raise SceneError(f"object {item.id}: nothing can lie on {item.on!r}; one of {offer}")
+    height = surface.center.z + asset.size[2] / 2 + 0.001
+    body = spec.worldbody.add_body(
+        name=object_body(item.id),
+        pos=[*item.position, height],
+        quat=Quaternion.from_yaw(math.radians(item.yaw_deg)).array(),
+    )
+    body.add_freejoint()
+    add_asset(spec, body, asset, object_body(item.id))
+
+
+def _locate(model: mujoco.MjModel, object_id: int, asset: Asset) -> WorldObject:
+    body = model.body(object_body(object_id)).id
+    joint = int(model.body_jntadr[body])
+    geoms = tuple(
+        int(g)
+        for g in np.flatnonzero(model.geom_bodyid == body)
+        if model.geom_contype[g] or model.geom_conaffinity[g]
+    )
+    return WorldObject(
+        object_id,
+        asset.class_name,
+        Vec3(*asset.size),
+        body,
+        int(model.jnt_qposadr[joint]),
+        int(model.jnt_dofadr[joint]),
+        geoms,
+    )
