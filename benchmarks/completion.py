@@ -16,13 +16,13 @@ import statistics
 from typing import Any
 
 import adamo_vh
-from adamo_vh.assemble.players import create_player, fitting
 from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.cli.episode import parse_resolution
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.inference.cost.tokens import Metered
 from adamo_vh.inference.model import close_model
-from adamo_vh.inference.tokens import Metered
+from adamo_vh.session.players import create_player, fitting
 
 
 def main() -> None:

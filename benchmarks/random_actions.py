@@ -23,7 +23,7 @@ from adamo_vh.action import parse
 from adamo_vh.action_server import LocalActionServer, execute_call
 from adamo_vh.errors import InvalidActionError
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.runtime.soundness import Soundness, step_faults, view_faults
+from adamo_vh.runtime.inspection.soundness import Soundness, step_faults, view_faults
 
 EPISODE_ACTIONS = 50
 RESOLUTION = (320, 180)

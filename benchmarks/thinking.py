@@ -21,10 +21,10 @@ from dataclasses import dataclass, field, replace
 
 import adamo_vh
 from adamo_vh.action import ToolSchema
-from adamo_vh.assemble.players import create_player
 from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.inference.messages import HumanMessage, ImagePart, Message, ToolMessage
 from adamo_vh.inference.model import Model, ModelKind, Reply, Sampling
+from adamo_vh.session.players import create_player
 
 Asked = tuple[tuple[Message, ...], tuple[ToolSchema, ...], Sampling]
 

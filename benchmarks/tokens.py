@@ -28,11 +28,9 @@ from adamo_vh.action_server import LocalActionServer
 from adamo_vh.benchmark.oracle import Oracle
 from adamo_vh.benchmark.tasks import TASKS, Task
 from adamo_vh.cognition.profile import PROFILES, Profile, profile
-from adamo_vh.cognition.turns import CONFIDENCE, FINISH, NOTE
+from adamo_vh.cognition.turns import FINISH
 from adamo_vh.engine import Engine
-from adamo_vh.inference.messages import AIMessage, Message, ToolCall, ToolMessage
-from adamo_vh.inference.model import ModelKind, Reply, Sampling, Usage
-from adamo_vh.inference.tokens import (
+from adamo_vh.inference.cost.tokens import (
     ANTHROPIC,
     GEMINI,
     OPENAI_TILES,
@@ -42,7 +40,10 @@ from adamo_vh.inference.tokens import (
     estimate_request,
     estimate_tools,
 )
+from adamo_vh.inference.messages import AIMessage, Message, ToolCall, ToolMessage
+from adamo_vh.inference.model import ModelKind, Reply, Sampling, Usage
 from adamo_vh.perception import PerceptionConfig
+from adamo_vh.record.turn import CONFIDENCE, NOTE
 
 PAPER_TOKENS, PAPER_CALLS = 32_978, 4.67
 RULES: dict[str, ImageRule] = {
@@ -137,7 +138,8 @@ def oracle_actions(engine: Engine, task: Task) -> list[Action]:
     """What the oracle does, played once without pictures of any size that matters."""
     engine.reset(0)
     server = LocalActionServer(engine, perception=PerceptionConfig(grid=0), resolution=(1920, 1080))
-    oracle, actions = Oracle(task.conditions, server.tag), []
+    oracle = Oracle(task.conditions, server.tag)
+    actions: list[Action] = []
     server.observe()
     while (action := oracle.next_action(engine.state(), server.seen)) is not None:
         actions.append(action)

@@ -13,7 +13,9 @@ from PIL import Image
 from tests.tabletop import carried_out, tabletop
 
 from adamo_vh.action import Code, Drop, Feedback, Look, Outcome, Pick, Walk
-from adamo_vh.benchmark.episode import (
+from adamo_vh.benchmark.tasks import task
+from adamo_vh.engine import WorldState
+from adamo_vh.episode.result import (
     MANIFEST,
     RESULT,
     EpisodeConfig,
@@ -21,9 +23,12 @@ from adamo_vh.benchmark.episode import (
     summarise,
     write_record,
 )
-from adamo_vh.benchmark.tasks import task
-from adamo_vh.cognition.termination import TerminationReason
-from adamo_vh.cognition.trajectory import (
+from adamo_vh.geometry import Camera, Vec3
+from adamo_vh.inference.messages import ToolCall
+from adamo_vh.inference.model import ModelKind, Usage
+from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
+from adamo_vh.record.termination import TerminationReason
+from adamo_vh.record.trajectory import (
     Acted,
     Ended,
     LeftOut,
@@ -33,11 +38,6 @@ from adamo_vh.cognition.trajectory import (
     observed,
     read_trajectory,
 )
-from adamo_vh.engine import WorldState
-from adamo_vh.geometry import Camera, Vec3
-from adamo_vh.inference.messages import ToolCall
-from adamo_vh.inference.model import ModelKind, Usage
-from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
 
 Painter = Callable[[WorldState, Camera, Sequence[ObservedObject]], Image.Image]
 

@@ -19,8 +19,8 @@ from adamo_vh.inference.messages import (
     ToolCall,
 )
 from adamo_vh.inference.model import Reply, Sampling
-from adamo_vh.inference.provider import ProviderModel
-from adamo_vh.inference.retry import RetryPolicy
+from adamo_vh.inference.remote.provider import ProviderModel
+from adamo_vh.inference.remote.retry import RetryPolicy
 
 TOOLS = [tool_schema(action) for action in (Look, Walk, Pick, Drop)]
 FIRST = ImagePart(b"\xff\xd8\xff\xe0 first frame", "image/jpeg", 1920, 1080)

@@ -8,14 +8,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from adamo_vh.assemble.chat import ChatSession
-    from adamo_vh.assemble.engines import create_engine
-    from adamo_vh.assemble.episode import resume_episode, run_episode
-    from adamo_vh.assemble.replaying import replay_episode
-    from adamo_vh.benchmark.episode import EpisodeConfig, EpisodeResult
     from adamo_vh.cognition.budget import Budget
     from adamo_vh.cognition.profile import Profile
+    from adamo_vh.episode.result import EpisodeConfig, EpisodeResult
     from adamo_vh.errors import AdamoError
+    from adamo_vh.session.chat import ChatSession
+    from adamo_vh.session.engines import create_engine
+    from adamo_vh.session.episode import resume_episode, run_episode
+    from adamo_vh.session.replaying import replay_episode
 
 __all__ = [
     "AdamoError",
@@ -33,14 +33,14 @@ __all__ = [
 _HOME = {
     "AdamoError": "adamo_vh.errors",
     "Budget": "adamo_vh.cognition.budget",
-    "ChatSession": "adamo_vh.assemble.chat",
-    "EpisodeConfig": "adamo_vh.benchmark.episode",
-    "EpisodeResult": "adamo_vh.benchmark.episode",
+    "ChatSession": "adamo_vh.session.chat",
+    "EpisodeConfig": "adamo_vh.episode.result",
+    "EpisodeResult": "adamo_vh.episode.result",
     "Profile": "adamo_vh.cognition.profile",
-    "create_engine": "adamo_vh.assemble.engines",
-    "replay_episode": "adamo_vh.assemble.replaying",
-    "resume_episode": "adamo_vh.assemble.episode",
-    "run_episode": "adamo_vh.assemble.episode",
+    "create_engine": "adamo_vh.session.engines",
+    "replay_episode": "adamo_vh.session.replaying",
+    "resume_episode": "adamo_vh.session.episode",
+    "run_episode": "adamo_vh.session.episode",
 }
 
 

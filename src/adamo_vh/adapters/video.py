@@ -17,11 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.cognition.profile import Profile
-from adamo_vh.cognition.trajectory import Acted, Ended, Event, Observed, Started, Thought
-from adamo_vh.cognition.turns import Wish, read_turn
+from adamo_vh.cognition.turns import read_turn
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.observation import Frame
+from adamo_vh.record.trajectory import Acted, Ended, Event, Observed, Started, Thought
+from adamo_vh.record.turn import Wish
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.embodiment import Body
 from adamo_vh.runtime.stage import FRAMES_PER_S

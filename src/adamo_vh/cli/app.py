@@ -166,7 +166,7 @@ def replay(
 @app.command()
 def report(run_dir: Annotated[Path, typer.Argument(help="A run folder.")]) -> None:
     """Write the page of a recorded episode again."""
-    from adamo_vh.benchmark.page import write_page
+    from adamo_vh.report.page import write_page
 
     typer.echo(write_page(run_dir))
 

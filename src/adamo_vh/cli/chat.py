@@ -7,14 +7,14 @@ from typing import Any
 
 from rich.console import Console
 
-from adamo_vh.assemble.chat import ChatSession
-from adamo_vh.assemble.episode import chosen_profile, member
-from adamo_vh.benchmark.episode import EpisodeConfig
 from adamo_vh.cli.episode import new_run_folder
 from adamo_vh.cli.progress import Progress
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
-from adamo_vh.cognition.trajectory import Ended
+from adamo_vh.episode.result import EpisodeConfig
 from adamo_vh.perception import Labeling
+from adamo_vh.record.trajectory import Ended
+from adamo_vh.session.chat import ChatSession
+from adamo_vh.session.episode import chosen_profile, member
 
 
 def talk(

@@ -14,14 +14,14 @@ from typing import Any
 import typer
 from rich.console import Console
 
-from adamo_vh.benchmark.episode import EpisodeResult, to_json
 from adamo_vh.cli.progress import Progress
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.forecast import Forecast
-from adamo_vh.cognition.termination import Limits, TerminationReason
-from adamo_vh.cognition.trajectory import Observer
 from adamo_vh.engine import Engine
+from adamo_vh.episode.result import EpisodeResult, to_json
 from adamo_vh.errors import ConfigError
+from adamo_vh.record.termination import Limits, TerminationReason
+from adamo_vh.record.trajectory import Observer
 
 RUNS = Path("runs")
 
@@ -37,7 +37,7 @@ def run_and_show(
     **settings: Any,
 ) -> None:
     """Run an episode and print what happens, or one JSON object at the end."""
-    from adamo_vh.assemble.episode import run_episode
+    from adamo_vh.session.episode import run_episode
 
     folder = out or new_run_folder(settings["task"] or instruction or "")
     with ExitStack() as stack:
@@ -88,7 +88,7 @@ def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> 
 
 def resume_and_show(folder: Path, *, as_json: bool) -> None:
     """Go on with an interrupted run."""
-    from adamo_vh.assemble.episode import resume_episode
+    from adamo_vh.session.episode import resume_episode
 
     progress = () if as_json else (Progress(Console()),)
     _show(resume_episode(folder, observers=progress), folder, as_json=as_json)
@@ -105,7 +105,7 @@ def _show(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
 
 def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
     """Replay a run folder and say whether every state came out the same."""
-    from adamo_vh.assemble.replaying import replay_episode
+    from adamo_vh.session.replaying import replay_episode
 
     report = replay_episode(run_dir, start)
     same = not report.mismatches

@@ -10,11 +10,16 @@ from datetime import datetime
 import typer
 from rich.console import Console
 
-from adamo_vh.assemble.players import create_player
 from adamo_vh.errors import ModelConfigError, ModelError
-from adamo_vh.inference.capabilities import Capabilities, Support, ToolSupport, load_capabilities
 from adamo_vh.inference.model import Rung
 from adamo_vh.inference.registry import create_local_model, probe_and_keep
+from adamo_vh.inference.remote.capabilities import (
+    Capabilities,
+    Support,
+    ToolSupport,
+    load_capabilities,
+)
+from adamo_vh.session.players import create_player
 
 _SIGHT_FIX = "use a model that sees; without pictures it has the symbolic text alone"
 _OWN_SIGHT_FIX = f"start llama-server with --mmproj FILE; else {_SIGHT_FIX}"

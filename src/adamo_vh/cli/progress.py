@@ -12,7 +12,9 @@ from rich.text import Text
 
 from adamo_vh.action import Outcome
 from adamo_vh.cognition.profile import Profile
-from adamo_vh.cognition.trajectory import (
+from adamo_vh.cognition.turns import read_turn
+from adamo_vh.observation import Frame
+from adamo_vh.record.trajectory import (
     Acted,
     Ended,
     Event,
@@ -22,8 +24,7 @@ from adamo_vh.cognition.trajectory import (
     Started,
     Thought,
 )
-from adamo_vh.cognition.turns import Wish, read_turn
-from adamo_vh.observation import Frame
+from adamo_vh.record.turn import Wish
 
 _STYLE = {Outcome.DONE: "green", Outcome.CORRECTED: "yellow", Outcome.REFUSED: "red"}
 _NOTED = Profile(note_argument=True, finish_check=True)

@@ -16,7 +16,7 @@ from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.scenes import Scene, load_scene, scene_names
 
 if TYPE_CHECKING:
-    from adamo_vh.runtime.scenes.finding import SceneFinding
+    from adamo_vh.runtime.inspection.finding import SceneFinding
 
 
 def list_scenes(*, as_json: bool) -> None:
@@ -49,7 +49,7 @@ def list_scenes(*, as_json: bool) -> None:
 
 def check(file: str, out: Path | None, *, as_json: bool) -> None:
     """Look a scene over, with pictures; exit 1 if something is wrong with it."""
-    from adamo_vh.runtime.scenes.finding import Severity
+    from adamo_vh.runtime.inspection.finding import Severity
 
     name, findings, pictures = _inspected(file, out)
     ok = all(finding.severity is not Severity.ERROR for finding in findings)
@@ -69,8 +69,8 @@ def check(file: str, out: Path | None, *, as_json: bool) -> None:
 
 def _inspected(file: str, out: Path | None) -> tuple[str, tuple[SceneFinding, ...], list[Path]]:
     """Name, findings and pictures; what cannot be simulated gets no pictures."""
-    from adamo_vh.runtime.scenes.arrangement import inspect_arrangement
-    from adamo_vh.runtime.scenes.inspection import inspect_scene
+    from adamo_vh.runtime.inspection.arrangement import inspect_arrangement
+    from adamo_vh.runtime.inspection.checks import inspect_scene
 
     try:
         scene = load_scene(file)
@@ -91,7 +91,7 @@ def _inspected(file: str, out: Path | None) -> tuple[str, tuple[SceneFinding, ..
 
 
 def _as_finding(fault: SceneError, file: str) -> SceneFinding:
-    from adamo_vh.runtime.scenes.finding import error
+    from adamo_vh.runtime.inspection.finding import error
 
     told = str(fault).removeprefix(f"{file}: ")
     where, _, problem = told.partition(": ")
@@ -114,7 +114,7 @@ def _draw(
 ) -> list[Path]:
     from PIL import Image
 
-    from adamo_vh.runtime.scenes.inspection import cameras
+    from adamo_vh.runtime.inspection.checks import cameras
 
     folder.mkdir(parents=True, exist_ok=True)
     engine.reset(0)

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from adamo_vh.adapters.model_serving import serve_model
+from adamo_vh.model_server.model_serving import serve_model
 
 if TYPE_CHECKING:
-    from adamo_vh.adapters.openai_endpoint import Served
+    from adamo_vh.model_server.openai_endpoint import Served
 
 
 def serve(model: str, host: str, port: int, faults: Path | None, *, tools: bool) -> None:

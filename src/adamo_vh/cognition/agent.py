@@ -11,11 +11,17 @@ from adamo_vh.action import Inspect, action_name
 from adamo_vh.action_server import ActionResult, ActionServer, execute_call
 from adamo_vh.cognition.doubts import Doubts
 from adamo_vh.cognition.guards import Guard, LoopGuard, ProtocolGuard
-from adamo_vh.cognition.memory import Result, ShortTermMemory
+from adamo_vh.cognition.memory.short_term import Result, ShortTermMemory
 from adamo_vh.cognition.profile import PAPER, Profile
 from adamo_vh.cognition.prompts import render
-from adamo_vh.cognition.termination import Limits, Stopwatch, TerminationReason
-from adamo_vh.cognition.trajectory import (
+from adamo_vh.cognition.turns import offered, read_turn
+from adamo_vh.errors import AdamoError
+from adamo_vh.inference.messages import AIMessage
+from adamo_vh.inference.model import Model, Sampling
+from adamo_vh.observation import Frame, Observation
+from adamo_vh.perception import TextForm
+from adamo_vh.record.termination import Limits, Stopwatch, TerminationReason
+from adamo_vh.record.trajectory import (
     Ended,
     Event,
     LeftOut,
@@ -26,12 +32,7 @@ from adamo_vh.cognition.trajectory import (
     shown,
     thought,
 )
-from adamo_vh.cognition.turns import Turn, Wish, offered, read_turn
-from adamo_vh.errors import AdamoError
-from adamo_vh.inference.messages import AIMessage
-from adamo_vh.inference.model import Model, Sampling
-from adamo_vh.observation import Frame, Observation
-from adamo_vh.perception import TextForm
+from adamo_vh.record.turn import Turn, Wish
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,12 +11,12 @@ import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from adamo_vh.cognition.termination import TerminationReason
-from adamo_vh.cognition.trajectory import Acted, Event, Started, Thought
 from adamo_vh.errors import ConfigError
+from adamo_vh.inference.cost.tokens import is_estimated
 from adamo_vh.inference.model import Usage
-from adamo_vh.inference.tokens import is_estimated
 from adamo_vh.observation import Frame
+from adamo_vh.record.termination import TerminationReason
+from adamo_vh.record.trajectory import Acted, Event, Started, Thought
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.errors import ConfigError
+from adamo_vh.inference.cost.prices import cost_usd
 from adamo_vh.inference.model import Usage
-from adamo_vh.inference.pricing import cost_usd
 
 SECONDS_PER_CALL = 6.85
 """The paper's mean for GPT-4o over both labelings and scenes."""

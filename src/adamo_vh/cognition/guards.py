@@ -7,9 +7,9 @@ from collections import Counter, deque
 from collections.abc import Sequence
 from typing import Protocol
 
-from adamo_vh.cognition.termination import TerminationReason
-from adamo_vh.cognition.trajectory import Acted, Ended, Event, Started, Thought
 from adamo_vh.observation import Frame
+from adamo_vh.record.termination import TerminationReason
+from adamo_vh.record.trajectory import Acted, Ended, Event, Started, Thought
 
 
 class Guard(Protocol):

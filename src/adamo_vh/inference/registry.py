@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from adamo_vh.errors import ModelConfigError
 from adamo_vh.inference.model import Model, Rung
-from adamo_vh.inference.retry import RetryPolicy
+from adamo_vh.inference.remote.retry import RetryPolicy
 
 if TYPE_CHECKING:
-    from adamo_vh.inference.capabilities import Capabilities
+    from adamo_vh.inference.remote.capabilities import Capabilities
 
 KNOWN = (
     "baseline, baseline:ocr, random, random:SEED, scripted:FILE.json, replay:RUN_DIR, "
@@ -34,7 +34,7 @@ def create_model(
 ) -> Model:
     """Make the model of a URI.
 
-    ``replay:`` needs a run folder, which inference knows nothing of; `adamo_vh.assemble` makes it.
+    ``replay:`` needs a run folder, which inference knows nothing of; `adamo_vh.session` makes it.
 
     Args:
         uri: ``baseline``, ``baseline:ocr``, ``random``, ``random:SEED``,
@@ -86,15 +86,15 @@ def create_local_model(uri: str) -> Model | None:
 
         return BaselineModel(ocr=uri == "baseline:ocr")
     if prefix == "random":
-        from adamo_vh.inference.random_calls import RandomModel
+        from adamo_vh.inference.players.random import RandomModel
 
         return RandomModel(_seed(uri, rest))
     if prefix == "scripted" and rest:
-        from adamo_vh.inference.scripted import ScriptedModel, load_script
+        from adamo_vh.inference.players.scripted import ScriptedModel, load_script
 
         return ScriptedModel(uri, load_script(rest))
     if prefix == "cassette" and rest:
-        from adamo_vh.inference.cassette import Cassette
+        from adamo_vh.inference.players.cassette import Cassette
 
         return Cassette(rest)
     return None
@@ -110,10 +110,10 @@ def _seed(uri: str, text: str) -> int:
 def _remote_model(
     uri: str, retry: RetryPolicy | None, tools: str, *, several_calls: bool, cache: bool
 ) -> Model:
-    from adamo_vh.inference.capabilities import load_capabilities
-    from adamo_vh.inference.endpoint import check_remote_allowed, parse_endpoint
     from adamo_vh.inference.ladder import Ladder
-    from adamo_vh.inference.provider import ProviderModel
+    from adamo_vh.inference.remote.capabilities import load_capabilities
+    from adamo_vh.inference.remote.endpoint import check_remote_allowed, parse_endpoint
+    from adamo_vh.inference.remote.provider import ProviderModel
 
     check_remote_allowed(parse_endpoint(uri))
     known = load_capabilities(uri)
@@ -132,8 +132,8 @@ def probe_and_keep(uri: str, retry: RetryPolicy | None = None) -> Capabilities:
         ModelConfigError: The URI, the provider's package or its key is wrong or missing.
         ModelError: The model cannot be reached; nothing is kept.
     """
-    from adamo_vh.inference.capabilities import save_capabilities
-    from adamo_vh.inference.probe import probe
+    from adamo_vh.inference.remote.capabilities import save_capabilities
+    from adamo_vh.inference.remote.probe import probe
 
     check_remote_uri(uri)
     found = probe(uri, retry)
@@ -142,6 +142,6 @@ def probe_and_keep(uri: str, retry: RetryPolicy | None = None) -> Capabilities:
 
 
 def _is_known_provider(prefix: str) -> bool:
-    from adamo_vh.inference.endpoint import is_known_provider
+    from adamo_vh.inference.remote.endpoint import is_known_provider
 
     return is_known_provider(prefix)

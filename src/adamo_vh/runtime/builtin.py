@@ -21,10 +21,10 @@ from adamo_vh.runtime import physics
 from adamo_vh.runtime.embodiment import REACH_M, REACH_TOP_M, Body
 from adamo_vh.runtime.human.looks import VARIANTS, load_figure
 from adamo_vh.runtime.human.motion import drop_motion, look_motion, pick_motion, walk_motion
+from adamo_vh.runtime.inspection.settled import settled_world
 from adamo_vh.runtime.navigation import BODY_RADIUS_M, FloorMap, Path, Ways
 from adamo_vh.runtime.placement import Spot, free_spots, spread
 from adamo_vh.runtime.scenes.scene import Scene, load_scene
-from adamo_vh.runtime.settled import settled_world
 from adamo_vh.runtime.solids import Solid
 from adamo_vh.runtime.stage import Stage
 from adamo_vh.runtime.world import World

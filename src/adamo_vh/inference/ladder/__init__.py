@@ -12,7 +12,6 @@ from typing import Protocol
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.arguments import dump_arguments
-from adamo_vh.inference.capabilities import Capabilities
 from adamo_vh.inference.ladder.conversation import UNREADABLE, merged, rewritten
 from adamo_vh.inference.ladder.json_form import JsonForm
 from adamo_vh.inference.ladder.react_form import ReactForm
@@ -28,6 +27,7 @@ from adamo_vh.inference.ladder.steps import (
 from adamo_vh.inference.messages import AIMessage, HumanMessage, Message, TextPart, ToolCall
 from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling
 from adamo_vh.inference.prompts import render
+from adamo_vh.inference.remote.capabilities import Capabilities
 from adamo_vh.inference.text_calls import fresh_id, recognise_call
 
 _JSON, _REACT = JsonForm(), ReactForm()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from adamo_vh.inference.prompting import render_from
+from adamo_vh.render import render_from
 
 
 def render(name: str, **variables: object) -> str:

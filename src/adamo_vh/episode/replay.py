@@ -1,0 +1,73 @@
+"""Execute a recorded episode again, without its model, and compare every state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from adamo_vh.action_server import ActionServer, execute_call
+from adamo_vh.errors import RecordError
+from adamo_vh.observation import Frame
+from adamo_vh.record.trajectory import Acted, Event, Observed, Started, Trajectory, frame_name
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayReport:
+    """Whether a recorded episode came out the same when it was executed again."""
+
+    steps: int
+    """Actions executed again."""
+    mismatches: tuple[str, ...]
+    """What differed, in order; empty if every state hash is the same."""
+    frames_differ: int
+    """Frames with other bytes: possible on another machine, no error there."""
+
+
+def replay(server: ActionServer, recorded: Trajectory, start: int = 0) -> ReplayReport:
+    """Replay a trajectory.
+
+    Args:
+        server: Of the same scene and settings, just reset.
+        recorded: What happened.
+        start: Begin after this many steps, from the state that was saved there.
+
+    Raises:
+        RecordError: There is no such step.
+    """
+    acts = recorded.acts
+    if not 0 <= start <= len(acts):
+        raise RecordError(f"step {start}: the episode has steps 0 to {len(acts)}.")
+    began = next((e for e in recorded.events if isinstance(e, Started)), None)
+    if began is None:
+        raise RecordError("The episode has no beginning.")
+    server.load(acts[start - 1].saved if start else began.saved)
+    mismatches, frames_differ = [], 0
+    before = acts[start - 1].state_hash if start else began.state_hash
+    if server.state_hash() != before:
+        mismatches.append(f"the state after step {start} differs from the recorded one")
+    frame: Frame | None = None
+    for event in _events_after(recorded, start):
+        if isinstance(event, Acted):
+            result = execute_call(server, event.name, event.arguments)
+            frame = None if result.observation is None else result.observation.frame
+            if result.state_hash != event.state_hash:
+                mismatches.append(
+                    f"step {event.step}: {event.name} led to state {result.state_hash[:12]}, "
+                    f"recorded {event.state_hash[:12]}"
+                )
+        if isinstance(event, Observed):
+            # A view that no action brought was asked for: at the start, or to see what changed.
+            seen = frame or server.observe().frame
+            frames_differ += frame_name(seen) != event.frame
+            frame = None
+    return ReplayReport(len(acts) - start, tuple(mismatches), frames_differ)
+
+
+def _events_after(recorded: Trajectory, start: int) -> Iterator[Event]:
+    """The events after a number of actions; the views that followed the last of them are passed."""
+    count = 0
+    for event in recorded.events:
+        if isinstance(event, Acted):
+            count += 1
+        if count > start or start == 0:
+            yield event

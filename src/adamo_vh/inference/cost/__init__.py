@@ -1,0 +1,1 @@
+"""What a model call takes: tokens and money."""

@@ -1,0 +1,195 @@
+"""Estimate the tokens of a whole request and of a reply, without a provider.
+
+For forecasts, for comparing profiles offline, and for players that have no tokens of their own.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.arguments import dump_arguments
+from adamo_vh.inference.cost.pictures import (
+    ANTHROPIC,
+    ANTHROPIC_HIGH,
+    GEMINI,
+    GEMINI_3,
+    OPENAI_PATCHES,
+    OPENAI_TILES,
+    QWEN,
+    QWEN_3,
+    ImageRule,
+    Patches,
+    Tiles,
+    estimate_image,
+    rule_for,
+)
+from adamo_vh.inference.cost.text import estimate_text
+from adamo_vh.inference.messages import (
+    AIMessage,
+    HumanMessage,
+    ImagePart,
+    Message,
+    TextPart,
+    ToolMessage,
+)
+from adamo_vh.inference.model import Model, ModelKind, Reply, Sampling, Usage, close_model
+
+__all__ = [
+    "ANTHROPIC",
+    "ANTHROPIC_HIGH",
+    "ESTIMATED",
+    "GEMINI",
+    "GEMINI_3",
+    "OPENAI_PATCHES",
+    "OPENAI_TILES",
+    "QWEN",
+    "QWEN_3",
+    "ImageRule",
+    "Metered",
+    "estimate_image",
+    "estimate_message",
+    "estimate_reply",
+    "estimate_request",
+    "estimate_text",
+    "estimate_tools",
+    "is_estimated",
+    "rule_for",
+]
+
+PER_MESSAGE = 4
+"""Signs around a message, and its role."""
+REPLY_START = 3
+"""Signs that open the reply, paid with the request."""
+FUNCTION_START, PROPERTIES_START, PER_PROPERTY, FUNCTIONS_END = 7, 3, 3, 12
+"""Signs around tools, as OpenAI's Cookbook counts them for GPT-4o ("How to count tokens with
+tiktoken", section 7)."""
+PER_CALL = 4
+"""Signs around a tool call: that it is one, its name's end, its arguments' start and end."""
+
+ESTIMATED = ("usage", "estimated")
+"""What `Reply.settings` say about a usage that no provider counted."""
+
+
+def estimate_request(
+    messages: Iterable[Message],
+    tools: Iterable[ToolSchema] = (),
+    rule: ImageRule = OPENAI_TILES,
+) -> int:
+    """Input tokens of a request.
+
+    Args:
+        messages: The whole prompt.
+        tools: The tools on offer, counted as the JSON that is sent.
+        rule: How pictures are counted.
+    """
+    told = sum(estimate_message(message, rule) for message in messages)
+    return told + estimate_tools(tools, rule) + REPLY_START
+
+
+def estimate_message(message: Message, rule: ImageRule = OPENAI_TILES) -> int:
+    """Input tokens of one message of a prompt."""
+    texts = sum(estimate_text(text) for text in _texts(message))
+    pictures = sum(estimate_image(p.width_px, p.height_px, rule) for p in _pictures(message))
+    calls = len(message.calls) * PER_CALL if isinstance(message, AIMessage) else 0
+    return PER_MESSAGE + texts + pictures + calls
+
+
+def estimate_tools(tools: Iterable[ToolSchema], rule: ImageRule = OPENAI_TILES) -> int:
+    """Input tokens of the tools on offer.
+
+    OpenAI's models read them in a form of their own, whose size its Cookbook gives; others are
+    taken to read the JSON.
+    """
+    if isinstance(rule, Tiles | Patches):
+        counts = [_function_tokens(tool) for tool in tools]
+        return sum(counts) + FUNCTIONS_END if counts else 0
+    return sum(
+        estimate_text(
+            json.dumps(
+                {"name": t.name, "description": t.description, "parameters": t.parameters},
+                ensure_ascii=False,
+            )
+        )
+        for t in tools
+    )
+
+
+def _function_tokens(tool: ToolSchema) -> int:
+    fields = tool.parameters.get("properties", {})
+    lines = [f"{tool.name}:{tool.description.rstrip('.')}"]
+    for name, field in fields.items():
+        lines.append(f"{name}:{field.get('type', '')}:{field.get('description', '').rstrip('.')}")
+    signs = FUNCTION_START + (PROPERTIES_START if fields else 0) + PER_PROPERTY * len(fields)
+    return signs + sum(map(estimate_text, lines))
+
+
+def estimate_reply(message: AIMessage) -> int:
+    """Output tokens of a reply; hidden reasoning cannot be known and is left out."""
+    return sum(map(estimate_text, _texts(message))) + len(message.calls) * PER_CALL
+
+
+def is_estimated(settings: Mapping[str, Any]) -> bool:
+    """Whether the settings of a reply say that its usage is an estimate."""
+    key, value = ESTIMATED
+    return bool(settings.get(key) == value)
+
+
+class Metered:
+    """A model whose tokens are estimated where it counts none of its own.
+
+    The oracle, scripts and the baseline have no tokenizer; with this their prompts can be compared
+    with those of a VLM. Such a usage is marked in `Reply.settings`.
+    """
+
+    def __init__(self, model: Model, rule: ImageRule = OPENAI_TILES) -> None:
+        """Wrap a model; `rule` says how its pictures are counted."""
+        self._model = model
+        self._rule = rule
+
+    @property
+    def name(self) -> str:
+        """The model's name."""
+        return self._model.name
+
+    @property
+    def kind(self) -> ModelKind:
+        """The model's kind."""
+        return self._model.kind
+
+    def complete(
+        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+    ) -> Reply:
+        """Answer, with an estimated usage if the model gives none."""
+        reply = self._model.complete(messages, tools, sampling)
+        if reply.usage != Usage():
+            return reply
+        usage = Usage(estimate_request(messages, tools, self._rule), estimate_reply(reply.message))
+        key, value = ESTIMATED
+        return replace(reply, usage=usage, settings={**reply.settings, key: value})
+
+    def close(self) -> None:
+        """Close the model's connections, if it has any."""
+        close_model(self._model)
+
+
+def _texts(message: Message) -> Iterator[str]:
+    """Every text of a message that a model reads or writes."""
+    if isinstance(message, HumanMessage):
+        yield from (part.text for part in message.parts if isinstance(part, TextPart))
+        return
+    yield message.text
+    if isinstance(message, AIMessage):
+        for call in message.calls:
+            yield call.name
+            yield call.raw or dump_arguments(call.arguments or {})
+
+
+def _pictures(message: Message) -> Iterator[ImagePart]:
+    if isinstance(message, HumanMessage):
+        yield from (part for part in message.parts if isinstance(part, ImagePart))
+    elif isinstance(message, ToolMessage):
+        yield from message.images

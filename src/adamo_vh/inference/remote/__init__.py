@@ -1,0 +1,1 @@
+"""Models behind a network: wires, settings, faults, probe."""

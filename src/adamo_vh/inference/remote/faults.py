@@ -1,0 +1,242 @@
+"""Read what went wrong at a provider: is it worth another try, and what is there to say?"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from adamo_vh.inference.arguments import encodable_text
+from adamo_vh.inference.redaction import redacted
+from adamo_vh.inference.remote.exchange import Exchange
+from adamo_vh.inference.remote.retry import Failure
+
+_RETRYABLE_STATUS = frozenset({408, 409, 425, 429})
+_LONGEST_TEXT = 500
+
+_FIXES = {
+    401: "Check the API key in the environment.",
+    403: "Check the API key in the environment and what it may use.",
+    404: "Check the model's name and the server's address.",
+}
+
+_PERMANENT = re.compile(
+    r"mmproj"
+    r"|image input is not supported|not support\w* (?:image|vision|multimodal)"
+    r"|is not a multimodal model|at most 0 image"
+    r"|failed to parse tool call arguments|invalid tool call arguments"
+    r"|jinja|chat[ _]template|conversation roles must alternate",
+    re.IGNORECASE,
+)
+"""Faults of the request that servers report as their own: no waiting mends them."""
+
+_TOO_LONG = re.compile(
+    r"context[ _](?:length|window|size)|maximum context|prompt is too long|exceed_context"
+    r"|input token count .* exceeds|maximum prompt length",
+    re.IGNORECASE | re.DOTALL,
+)
+
+_NO_CREDIT = ("insufficient_quota", "billing_hard_limit_reached", "insufficient_credits")
+
+_ERROR_STATUS = {
+    "authentication_error": 401,
+    "billing_error": 402,
+    "permission_error": 403,
+    "not_found_error": 404,
+    "request_too_large": 413,
+    "rate_limit_error": 429,
+    "rate_limit_exceeded": 429,
+    "insufficient_quota": 429,
+    "api_error": 500,
+    "overloaded_error": 529,
+}
+"""HTTP status of an error that only names its type."""
+
+
+def read_exchange(exchange: Exchange) -> Failure | None:
+    """Read an answer's bytes.
+
+    Returns:
+        What is wrong with it; None if it is no plain error.
+    """
+    if exchange.status is None:
+        return None
+    if exchange.status >= 400:
+        return _failed(exchange.status, exchange.body or exchange.text, exchange)
+    if "event-stream" in exchange.headers.get("content-type", ""):
+        return None
+    body = exchange.body
+    if not isinstance(body, dict):
+        return Failure("The answer is no JSON object.", True)
+    if blocked := _blocked(body):
+        return Failure(f"The provider blocked the prompt: {_short(blocked)}", False)
+    if error := _hidden_error(body):
+        return _failed(_status_of(error), {"error": error}, exchange, hidden=True)
+    # Google's library takes any object for an answer, and finds it empty.
+    if "contents" in exchange.sent and not body.get("candidates"):
+        return Failure("The answer holds no candidates.", True)
+    return None
+
+
+def _hidden_error(body: Mapping[str, Any]) -> Any:
+    """An error that came under status 200, wherever it is; None if there is none."""
+    if body.get("error"):
+        return body["error"]
+    choices = body.get("choices")
+    first = choices[0] if isinstance(choices, list) and choices else None
+    if not isinstance(first, dict):
+        return None
+    if first.get("error"):
+        return first["error"]
+    return {"message": "the answer broke off"} if first.get("finish_reason") == "error" else None
+
+
+def _blocked(body: Mapping[str, Any]) -> str:
+    feedback = body.get("promptFeedback")
+    return str(feedback.get("blockReason") or "") if isinstance(feedback, dict) else ""
+
+
+def _status_of(error: Any) -> int:
+    """The HTTP status that an error stands for; 500 if it does not say."""
+    if not isinstance(error, dict):
+        return 500
+    for value in (error.get("code"), error.get("status")):
+        if str(value).isdigit() and 400 <= int(str(value)) < 600:
+            return int(str(value))
+    for name in (str(error.get("type")), str(error.get("code"))):
+        if name in _ERROR_STATUS:
+            return _ERROR_STATUS[name]
+        if name.startswith("invalid_"):
+            return 400
+    return 500
+
+
+def _failed(status: int, body: Any, exchange: Exchange, *, hidden: bool = False) -> Failure:
+    words = _server_text(body)
+    everything = f"{words} {body}"
+    told = f"HTTP {exchange.status} with an error" if hidden else f"HTTP {status}"
+    text = f"The server answered {told}: {_short(words)}"
+    if status != 429 and _TOO_LONG.search(everything):
+        text = f"The prompt is longer than the model's context. {text} Keep fewer steps in it."
+        return Failure(text, False)
+    if fix := _FIXES.get(status):
+        text = f"{text} {fix}"
+    final = _PERMANENT.search(everything) or _is_out_of_credit(body, everything)
+    retryable = (status in _RETRYABLE_STATUS or status >= 500) and not final
+    return Failure(text, retryable, _retry_after_s(exchange.headers, body))
+
+
+def _is_out_of_credit(body: Any, everything: str) -> bool:
+    """Used-up credit comes as 429 too, but no waiting brings it back."""
+    error = body.get("error") if isinstance(body, dict) else None
+    named = {str(error.get(key)) for key in ("code", "type")} if isinstance(error, dict) else set()
+    return bool(named & {*_NO_CREDIT}) or "PerDay" in everything
+
+
+def _retry_after_s(headers: Mapping[str, str], body: Any) -> float | None:
+    """Seconds that the server asked to wait, from a header or from Google's error details."""
+    from pydantic_ai.exceptions import ModelHTTPError
+
+    asked = ModelHTTPError(429, "", headers=dict(headers)).retry_after
+    if asked is not None:
+        return asked
+    found = re.search(r"'retryDelay': '(\d+(?:\.\d+)?)s'", str(body))
+    return float(found.group(1)) if found else None
+
+
+def read_error(error: Exception) -> Failure:
+    """Classify what a request raised that left no answer, or none that can be read.
+
+    Args:
+        error: Any exception of the client library, or of its reading of the answer.
+    """
+    from pydantic_ai.exceptions import (
+        ModelAPIError,
+        ModelConnectionError,
+        ModelHTTPError,
+        ModelRequestTimeout,
+        UserError,
+    )
+
+    if isinstance(error, ModelHTTPError):
+        headers = {name.lower(): value for name, value in (error.headers or {}).items()}
+        exchange = Exchange(status=error.status_code, headers=headers)
+        return _failed(error.status_code, error.body, exchange)
+    if isinstance(error, ModelConnectionError | ModelRequestTimeout):
+        if getattr(error, "phase", None) == "connect":
+            return Failure("No connection to the server. Is it running at that address?", True)
+        return Failure(f"The connection failed: {_short(str(error))}", True)
+    if isinstance(error, TimeoutError):
+        return Failure("No whole answer came in time.", True)
+    if isinstance(error, UserError):
+        return Failure(f"The request cannot be made: {_short(str(error))}", False)
+    if isinstance(error, ModelAPIError):
+        return Failure(f"The request failed: {_short(str(error))}", True, error.retry_after)
+    text = f"{type(error).__name__}: {error}"
+    return Failure(f"The answer cannot be read: {_short(text)}", True)
+
+
+SEVERAL_SYSTEM = "several_system_messages"
+"""Not a parameter, but refused like one: by the chat templates of some models."""
+
+_SPELLINGS = {
+    "top_p": r"top_?p",
+    "temperature": r"temperature",
+    "parallel_tool_calls": r"parallel_tool_calls|disable_parallel_tool_use",
+    "max_tokens": r"max_tokens|max_completion_tokens|max_?output_?tokens",
+    SEVERAL_SYSTEM: r"system (?:message|role)",
+}
+"""How servers spell what may go, in the order in which it goes."""
+
+_COMPLAINT = frozenset({400, 422})
+
+
+def refused_setting(exchange: Exchange, present: Collection[str]) -> str | None:
+    """The setting that a server refuses by name.
+
+    Args:
+        exchange: The answer.
+        present: Settings in the request that may be left out.
+
+    Returns:
+        Its name; None if the server complains of something else.
+    """
+    if exchange.status == 500:
+        # Some servers report as a fault of theirs what a chat template refuses.
+        present = {SEVERAL_SYSTEM} & {*present}
+    elif exchange.status not in _COMPLAINT or _TOO_LONG.search(exchange.text):
+        return None
+    text = _complaint(exchange.body)
+    for name, spelling in _SPELLINGS.items():
+        if name in present and re.search(rf"(?<![A-Za-z]){spelling}(?![A-Za-z])", text, re.I):
+            return name
+    return None
+
+
+def _complaint(body: Any) -> str:
+    """What a refusal is about: never the echo of the request that some carry."""
+    if not isinstance(body, dict):
+        return ""
+    error, detail = body.get("error"), body.get("detail")
+    if isinstance(error, dict) and error.get("param"):
+        return str(error["param"])
+    if isinstance(detail, list):
+        found = [item for item in detail if isinstance(item, dict)]
+        return " ".join(f"{item.get('loc')} {item.get('msg')}" for item in found)
+    return _server_text(body)
+
+
+def _server_text(body: object) -> str:
+    """The human part of an error body, wherever the server put it."""
+    for _ in range(3):
+        if not isinstance(body, dict):
+            break
+        body = next((body[key] for key in ("error", "message", "detail") if body.get(key)), "")
+    return str(body) if body else "(no message)"
+
+
+def _short(text: str) -> str:
+    """One line without keys; redacted before it is cut, so that no half of a key survives."""
+    text = " ".join(redacted(encodable_text(text)).split())
+    text = text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]}..."
+    return text if text.endswith((".", "!", "?")) else f"{text}."

@@ -1,0 +1,292 @@
+"""Any remote VLM or LLM, through pydantic-ai's direct model requests."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from threading import Lock
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self, cast
+
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.cost.prices import cost_usd
+from adamo_vh.inference.messages import AIMessage, Message
+from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.inference.remote.background import run_in_background
+from adamo_vh.inference.remote.clients import Connection, connect
+from adamo_vh.inference.remote.endpoint import parse_endpoint
+from adamo_vh.inference.remote.exchange import Exchange, sent_settings, watch, watching_client
+from adamo_vh.inference.remote.faults import read_error, read_exchange, refused_setting
+from adamo_vh.inference.remote.retry import Failure, RetryPolicy, run_with_retries
+from adamo_vh.inference.remote.settings import EXACT, Settings
+from adamo_vh.inference.remote.wire import from_usage, from_wire, to_parameters, to_wire
+
+if TYPE_CHECKING:
+    import httpx2
+    from pydantic_ai.messages import ModelMessage, ModelResponse
+    from pydantic_ai.models import Model as Client
+    from pydantic_ai.models import ModelRequestParameters
+
+
+@dataclass(slots=True)
+class _Asking:
+    """One answer in the making."""
+
+    messages: Sequence[Message]
+    parameters: ModelRequestParameters
+    sampling: Sampling
+    requests: int = 0
+    """Requests so far, those of failed tries included."""
+    settings: Mapping[str, Any] | None = None
+    """What the last try carried."""
+    seconds: float = 0.0
+    """How long the last try was on the wire."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Answer:
+    """An answer in neutral words."""
+
+    message: AIMessage
+    leaked: bool
+    """Whether its call was written into the text."""
+    usage: Usage
+
+
+class ProviderModel:
+    """A model behind a provider's API, or on a server of one's own.
+
+    Its key comes from the environment and is kept by the client library alone.
+    """
+
+    def __init__(
+        self,
+        uri: str,
+        retry: RetryPolicy | None = None,
+        refused: Iterable[str] = (),
+        *,
+        several_calls: bool = False,
+        cache: bool = False,
+    ) -> None:
+        """Make the client; nothing is sent yet.
+
+        Args:
+            uri: ``openai:NAME``, ``openai-responses:NAME``, ``anthropic:NAME``, ``google:NAME``, or
+                ``PROVIDER:NAME`` with a provider that pydantic-ai knows; with
+                ``@http://HOST:PORT/v1`` behind it for a server of one's own.
+            retry: Limits on trying again.
+            refused: Parameters that the server is known to refuse; see `refused`.
+            several_calls: Whether the model may call several tools in one turn.
+            cache: Whether to ask for a prompt cache where it must be asked for and writing it
+                costs extra (Anthropic). Worth it if each prompt begins as the one before.
+
+        Raises:
+            ModelConfigError: The URI, the provider's package or its key is wrong or missing.
+        """
+        self._name = uri
+        self._endpoint = parse_endpoint(uri)
+        self._retry = retry or RetryPolicy()
+        self._several_calls = several_calls
+        self._cache = cache
+        self._lock = Lock()
+        self._http: httpx2.AsyncClient | None = None
+        self._entered = False
+        self._connection = self._connect()
+        self._settings = Settings(self._connection.wire, refused)
+
+    def __repr__(self) -> str:
+        """The name alone."""
+        return f"ProviderModel({self._name!r})"
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def name(self) -> str:
+        """As in the URI that made it."""
+        return self._name
+
+    @property
+    def kind(self) -> ModelKind:
+        """Always a VLM."""
+        return ModelKind.VLM
+
+    @property
+    def wire(self) -> str:
+        """How it is spoken to.
+
+        "openai-chat", "openai-responses", "anthropic", "google", or the provider's name.
+        """
+        return self._connection.wire
+
+    @property
+    def pictures_in_results(self) -> bool:
+        """Whether a tool's result may hold pictures; else they follow it as a human message."""
+        return self._connection.pictures_in_results
+
+    @property
+    def refused(self) -> frozenset[str]:
+        """What the server refused by name, mostly parameters, and is no longer sent."""
+        return self._settings.refused
+
+    def complete(
+        self,
+        messages: Sequence[Message],
+        tools: Sequence[ToolSchema],
+        sampling: Sampling,
+        *,
+        schema: ToolSchema | None = None,
+    ) -> Reply:
+        """Ask the provider, trying again while its limits and faults may pass.
+
+        Args:
+            messages: The whole prompt, oldest first.
+            tools: The tools on offer.
+            sampling: Decoding settings.
+            schema: What the text of the answer must be, as JSON, if it must; the server is held to
+                it. Usually without tools.
+
+        Raises:
+            ProviderError: The request was refused, or failed after all retries.
+        """
+        asking = _Asking(messages, to_parameters(tools, schema), sampling)
+        answer = run_with_retries(
+            self._retry,
+            self._name,
+            lambda: self._try(asking),
+            adapt=lambda failure: bool(failure.refused),
+        )
+        usage = answer.value.usage
+        return Reply(
+            answer.value.message,
+            usage,
+            # The first use of a library takes seconds to load, which is not the model's time.
+            asking.seconds or answer.seconds,
+            answer.waited_s,
+            requests=asking.requests,
+            cost_usd=cost_usd(self._name, usage),
+            settings=asking.settings or {},
+            rung=Rung.LEAKED if answer.value.leaked else Rung.NATIVE,
+        )
+
+    def close(self) -> None:
+        """Close the connections; a further call opens new ones."""
+        with self._lock:
+            http, self._http = self._http, None
+            entered, self._entered = self._entered, False
+        if http is not None:
+            run_in_background(_close(self._connection.client, http, entered=entered))
+
+    @property
+    def _source(self) -> str:
+        """Who gives the answers: nobody else gets back what was kept of them."""
+        return f"{self._connection.wire}:{self._endpoint.model}"
+
+    def _connect(self) -> Connection:
+        self._http = watching_client(self._retry.timeout_s)
+        return connect(self._endpoint, self._http)
+
+    def _try(self, asking: _Asking) -> _Answer | Failure:
+        exchange = Exchange(required=EXACT if asking.sampling.exact else ())
+        settings = self._settings.wanted(
+            asking.sampling,
+            with_tools=bool(asking.parameters.function_tools),
+            several_calls=self._several_calls,
+        )
+        prompt = to_wire(
+            asking.messages, self._connection, self._source, one_system=self._settings.one_system
+        )
+        outcome: _Answer | Failure
+        try:
+            response = run_in_background(
+                self._request(prompt, asking.parameters, settings, exchange)
+            )
+            outcome = self._read(response, asking)
+        except Exception as error:
+            # The libraries' errors have no common base, and an answer that is JSON but no
+            # completion ends in any error at all, deep in their reading code. It is handed on as
+            # text: the exception itself holds the request, and with it the key.
+            outcome = read_error(error)
+        asking.requests += exchange.requests or 1
+        # Not every provider's library can be watched: then it is believed.
+        asking.settings = sent_settings(exchange.sent) or settings
+        asking.seconds = exchange.seconds
+        if exchange.withheld:
+            return _inexact(f"The client library does not send {exchange.withheld[0]}.")
+        # What the bytes say goes before what the library made of them.
+        failure = read_exchange(exchange)
+        if failure is None:
+            return outcome
+        if asking.sampling.exact and refused_setting(exchange, EXACT):
+            return _inexact(failure.text)
+        return replace(
+            failure, refused=self._settings.take_refusal(exchange, settings, asking.sampling)
+        )
+
+    def _read(self, response: ModelResponse, asking: _Asking) -> _Answer:
+        names = {tool.name for tool in asking.parameters.function_tools}
+        takes = self._connection.takes_thinking
+        message, leaked = from_wire(
+            response, asking.messages, names, self._source, takes_thinking=takes
+        )
+        return _Answer(message, leaked, from_usage(response.usage))
+
+    async def _request(
+        self,
+        prompt: list[ModelMessage],
+        parameters: ModelRequestParameters,
+        settings: Mapping[str, Any],
+        exchange: Exchange,
+    ) -> ModelResponse:
+        from pydantic_ai.direct import model_request
+        from pydantic_ai.settings import ModelSettings
+
+        watch(exchange)
+        client = await self._open()
+        # A provider without such a setting would warn at every call.
+        unknown = client.unsupported_settings
+        known = {name: value for name, value in settings.items() if name not in unknown}
+        timeout_s = self._retry.timeout_s
+        # The library's own retries would hide lost time in the time of the call.
+        limits = ModelSettings(max_retries=0, timeout=timeout_s, request_timeout=timeout_s)
+        if self._cache and self.wire == "anthropic":
+            limits["cache"] = True
+        # The libraries' own time-outs begin anew with every byte that trickles in.
+        async with asyncio.timeout(timeout_s):
+            return await model_request(
+                client,
+                prompt,
+                model_settings=cast(ModelSettings, {**limits, **known}),
+                model_request_parameters=parameters,
+            )
+
+    async def _open(self) -> Client:
+        """The client, ready to send; made anew after it was closed."""
+        with self._lock:
+            if self._http is None:
+                self._connection = self._connect()
+            client, first = self._connection.client, not self._entered
+            self._entered = True
+        if first:
+            await client.__aenter__()
+        return client
+
+
+async def _close(client: Client, http: httpx2.AsyncClient, *, entered: bool) -> None:
+    if entered:
+        await client.__aexit__(None, None, None)
+    await http.aclose()
+
+
+def _inexact(text: str) -> Failure:
+    fix = "These exact settings cannot be had of this model: use `--profile paper`."
+    return Failure(f"{text} {fix}", False)

@@ -1,0 +1,270 @@
+"""Translate between the neutral messages and those of pydantic-ai."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.arguments import dump_arguments, encodable_text, read_arguments
+from adamo_vh.inference.messages import (
+    AIMessage,
+    HumanMessage,
+    Message,
+    Part,
+    SystemMessage,
+    TextPart,
+    ToolCall,
+    ToolMessage,
+)
+from adamo_vh.inference.model import Usage
+from adamo_vh.inference.remote.clients import Connection
+from adamo_vh.inference.remote.kept import dump_kept, to_response
+from adamo_vh.inference.text_calls import fresh_id, recognise_call
+
+if TYPE_CHECKING:
+    from pydantic_ai import messages as wire
+    from pydantic_ai.models import ModelRequestParameters
+    from pydantic_ai.usage import RequestUsage
+
+_Input = SystemMessage | HumanMessage | ToolMessage
+
+_MADE_UP = "pyd_ai_"
+_NO_RESULT = "Not executed."
+CAPTION = "Picture from"
+"""Says whose picture follows, where it cannot be in the result itself."""
+
+
+def to_wire(
+    messages: Iterable[Message], connection: Connection, source: str, *, one_system: bool = False
+) -> list[wire.ModelMessage]:
+    """Translate a prompt.
+
+    Everything between two answers becomes one request, whose parts arrive as separate messages of
+    their own role: system text as system, feedback as tool, instructions and frames as user. Each
+    call of the answer before gets exactly one result, and the results come first, as every
+    provider wants it; all else keeps its place.
+
+    Args:
+        messages: The prompt, oldest first.
+        connection: Where it goes.
+        source: Who gets it; see `kept`.
+        one_system: Whether all system text at the start must be one message, and none may follow.
+    """
+    from pydantic_ai.messages import ModelRequest
+
+    if one_system:
+        messages = _with_one_system(messages)
+        connection = replace(connection, late_system=False)
+
+    translated: list[wire.ModelMessage] = []
+    for asked, following in _turns(messages):
+        if asked is not None:
+            translated.append(to_response(asked, source))
+        if parts := _turn(asked, following, connection):
+            translated.append(ModelRequest(parts=parts))
+    return translated
+
+
+def _with_one_system(messages: Iterable[Message]) -> list[Message]:
+    rest = [*messages]
+    texts: list[str] = []
+    while rest and isinstance(first := rest[0], SystemMessage):
+        texts.append(first.text)
+        del rest[0]
+    return [SystemMessage("\n\n".join(texts)), *rest] if texts else rest
+
+
+def _turns(messages: Iterable[Message]) -> Iterator[tuple[AIMessage | None, list[_Input]]]:
+    """Each answer with all that follows it up to the next; first what comes before any answer."""
+    asked: AIMessage | None = None
+    following: list[_Input] = []
+    for message in messages:
+        if isinstance(message, AIMessage):
+            yield asked, following
+            asked, following = message, []
+        else:
+            following.append(message)
+    yield asked, following
+
+
+def _turn(
+    asked: AIMessage | None, messages: Sequence[_Input], connection: Connection
+) -> list[wire.ModelRequestPart]:
+    """The parts of one request: the results of the calls, their pictures, and the rest."""
+    results = {m.call_id: m for m in reversed(messages) if isinstance(m, ToolMessage)}
+    calls = asked.calls if asked else ()
+    parts: list[wire.ModelRequestPart] = []
+    shown: list[Part] = []
+    for call in calls:
+        result = results.pop(call.id, None) or ToolMessage(call.id, call.name, _NO_RESULT)
+        inside = connection.pictures_in_results
+        parts.append(_result(result, with_pictures=inside))
+        if result.images and not inside:
+            shown += [TextPart(f"{CAPTION} {result.name} ({call.id}):"), *result.images]
+    if shown:
+        parts.append(_human(HumanMessage(tuple(shown))))
+    answered = {call.id for call in calls}
+    at_start = asked is None
+    for message in messages:
+        if isinstance(message, SystemMessage):
+            parts.append(_system(message, as_system=at_start or connection.late_system))
+            continue
+        at_start = False
+        if isinstance(message, HumanMessage):
+            parts.append(_human(message))
+        elif message.call_id not in answered:
+            # Its call was left out of the prompt; servers refuse a result without one.
+            note = TextPart(f"Result of {message.name}: {message.text}")
+            parts.append(_human(HumanMessage((note, *message.images))))
+    return parts
+
+
+def _system(message: SystemMessage, *, as_system: bool) -> wire.ModelRequestPart:
+    """System text; where a wire would move it to the front, it stays in place as the user's."""
+    from pydantic_ai import messages as wire
+
+    text = encodable_text(message.text)
+    return wire.SystemPromptPart(text) if as_system else wire.UserPromptPart(text)
+
+
+def _result(message: ToolMessage, *, with_pictures: bool) -> wire.ToolReturnPart:
+    from pydantic_ai import messages as wire
+
+    text = encodable_text(message.text)
+    pictures = [
+        wire.BinaryContent(image.data, media_type=image.media_type)
+        for image in message.images
+        if with_pictures
+    ]
+    return wire.ToolReturnPart(
+        tool_name=message.name,
+        content=[text, *pictures] if pictures else text,
+        tool_call_id=message.call_id,
+    )
+
+
+def _human(message: HumanMessage) -> wire.UserPromptPart:
+    from pydantic_ai import messages as wire
+
+    content: list[wire.UserContent] = [
+        encodable_text(part.text)
+        if isinstance(part, TextPart)
+        else wire.BinaryContent(part.data, media_type=part.media_type)
+        for part in message.parts
+    ]
+    if len(content) == 1 and isinstance(content[0], str):
+        return wire.UserPromptPart(content[0])
+    return wire.UserPromptPart(content)
+
+
+def to_parameters(
+    tools: Iterable[ToolSchema], schema: ToolSchema | None = None
+) -> ModelRequestParameters:
+    """Put tools on offer, or ask for JSON of a schema.
+
+    Strict mode stays off for tools: it would rewrite the schemas, and differently for each
+    provider, so that models would not be compared on the same words.
+
+    Args:
+        tools: Tools on offer.
+        schema: What the text of the answer must be, if it must.
+    """
+    from pydantic_ai.models import ModelRequestParameters
+    from pydantic_ai.output import OutputObjectDefinition
+    from pydantic_ai.tools import ToolDefinition
+
+    output: OutputObjectDefinition | None = None
+    if schema is not None:
+        output = OutputObjectDefinition(
+            json_schema=schema.parameters, name=schema.name, description=schema.description
+        )
+    return ModelRequestParameters(
+        output_mode="native" if output else "text",
+        output_object=output,
+        function_tools=[
+            ToolDefinition(
+                name=tool.name,
+                description=tool.description,
+                parameters_json_schema=tool.parameters,
+                strict=False,
+            )
+            for tool in tools
+        ],
+    )
+
+
+def from_wire(
+    response: wire.ModelResponse,
+    messages: Sequence[Message],
+    tools: Collection[str],
+    source: str,
+    *,
+    takes_thinking: bool,
+) -> tuple[AIMessage, bool]:
+    """Translate an answer.
+
+    Thinking parts are no part of the text. A refusal counts as text. If there is no native call
+    but a call leaked into the text, it is recognised.
+
+    Args:
+        response: The answer.
+        messages: The prompt it answers; new call ids differ from those in it.
+        tools: Names of the tools on offer.
+        source: Who gave the answer; see `kept`.
+        takes_thinking: Whether thinking can go back; see `kept`.
+
+    Returns:
+        The answer, and whether its call had leaked into the text.
+    """
+    from pydantic_ai import messages as wire
+
+    texts = [part.content for part in response.parts if isinstance(part, wire.TextPart)]
+    text = encodable_text("\n\n".join(texts)).strip()
+    taken = {call.id for m in messages if isinstance(m, AIMessage) for call in m.calls}
+    calls: list[ToolCall] = []
+    for part in response.parts:
+        if isinstance(part, wire.ToolCallPart):
+            calls.append(_call(part, taken))
+            taken.add(calls[-1].id)
+    kept = dump_kept(response, source, takes_thinking=takes_thinking)
+    if calls:
+        return AIMessage(text, tuple(calls), kept), False
+    if not text:
+        return AIMessage(_refusal(response), kept=kept), False
+    leaked = recognise_call(text, tools, taken)
+    if leaked is None:
+        return AIMessage(text, kept=kept), False
+    return AIMessage(leaked.text, leaked.calls, kept), True
+
+
+def _refusal(response: wire.ModelResponse) -> str:
+    """What a model that refused has said; empty if it did not refuse."""
+    details = response.provider_details or {}
+    if refusal := details.get("refusal"):
+        return encodable_text(str(refusal))
+    if response.finish_reason != "content_filter":
+        return ""
+    return f"(Refused: {details.get('finish_reason') or 'content filter'}.)"
+
+
+def _call(part: wire.ToolCallPart, taken: Collection[str]) -> ToolCall:
+    raw = part.args if isinstance(part.args, str) else dump_arguments(part.args or {})
+    # Some servers number calls anew in each answer; an id that means two calls confuses others.
+    # Some give none; the library then makes one up at random, ours follows from the call.
+    call_id = encodable_text(part.tool_call_id)
+    if call_id in taken or call_id.startswith(_MADE_UP):
+        call_id = fresh_id(f"{part.tool_name} {raw}", taken)
+    name = encodable_text(part.tool_name)
+    return ToolCall(call_id, name, read_arguments(raw), encodable_text(raw))
+
+
+_REASONING = ("reasoning_tokens", "thoughts_tokens", "thinking_tokens")
+"""Under which names the client library counts hidden reasoning."""
+
+
+def from_usage(usage: RequestUsage) -> Usage:
+    """Translate the token counts: those of the cache are part of the input on every wire."""
+    reasoning = max((usage.details.get(name, 0) for name in _REASONING), default=0)
+    return Usage(usage.input_tokens, usage.output_tokens, usage.cache_read_tokens, reasoning)

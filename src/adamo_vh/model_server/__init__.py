@@ -1,0 +1,1 @@
+"""A built-in model served over HTTP, with faults on demand."""

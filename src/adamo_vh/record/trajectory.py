@@ -1,0 +1,364 @@
+"""What happened, as it happens: typed events, observers of them, and the run folder.
+
+A run folder holds `manifest.json` (how the episode was set up), `events.jsonl` (one event a line,
+flushed at once, so that a kill loses at most the step in flight) and `frames/` (pictures named by
+their content). Everything else, the score too, can be computed from these.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import IO, Annotated, Any, Literal, Protocol
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from adamo_vh.action import Feedback
+from adamo_vh.action_server import ActionResult
+from adamo_vh.errors import RecordError
+from adamo_vh.inference.messages import AIMessage, Message, ToolCall
+from adamo_vh.inference.model import Reply, Rung, Usage
+from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
+from adamo_vh.record.termination import TerminationReason
+from adamo_vh.record.turn import reasoning
+
+EVENTS = "events.jsonl"
+FRAMES = "frames"
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """The instruction was given."""
+
+    instruction: str
+    system_prompt: str
+    state_hash: str
+    saved: str
+    """What `ActionServer.save` gave before the first view."""
+    type: Literal["started"] = "started"
+
+
+@dataclass(frozen=True, slots=True)
+class Observed:
+    """A new view reached the agent."""
+
+    step: int
+    frame: str
+    """File name in `frames/`, which is the hash of the content."""
+    width_px: int
+    height_px: int
+    objects: tuple[ObservedObject, ...]
+    points: tuple[ReferencePoint, ...]
+    agent: AgentState
+    type: Literal["observed"] = "observed"
+
+
+@dataclass(frozen=True, slots=True)
+class Thought:
+    """The model answered."""
+
+    step: int
+    state_text: str
+    """The symbolic state that the model read."""
+    messages: int
+    """How many messages the prompt had."""
+    note: str
+    """The text of the reply; see also `reasoning`."""
+    calls: tuple[ToolCall, ...]
+    usage: Usage
+    model_s: float
+    waited_s: float
+    requests: int = 1
+    cost_usd: float | None = None
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """The decoding settings in effect."""
+    rung: Rung | None = None
+    unreadable: str = ""
+    """Why this is a protocol failure; empty if it is none."""
+    kept: str = ""
+    """What the provider wants back with this answer; see `AIMessage.kept`."""
+    type: Literal["thought"] = "thought"
+
+    @property
+    def reply(self) -> Reply:
+        """What the model replied, as it came."""
+        return Reply(
+            AIMessage(self.note, self.calls, self.kept),
+            self.usage,
+            self.model_s,
+            self.waited_s,
+            self.requests,
+            self.cost_usd,
+            self.settings,
+            self.rung,
+            self.unreadable,
+        )
+
+    @property
+    def reasoning(self) -> str:
+        """The reasoning note: the text, or what the calls carry as their note."""
+        return reasoning(self.note, self.calls)
+
+
+@dataclass(frozen=True, slots=True)
+class Acted:
+    """A tool call was carried out, or refused."""
+
+    step: int
+    name: str
+    arguments: Mapping[str, Any] | None
+    feedback: Feedback
+    agent: AgentState
+    state_hash: str
+    saved: str
+    """What `ActionServer.save` gave afterwards: a replay can start here."""
+    world_s: float
+    type: Literal["acted"] = "acted"
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """The episode is over."""
+
+    steps: int
+    reason: TerminationReason
+    answer: str
+    """What the agent said at the end; the fault, if the episode broke."""
+    state_hash: str
+    seconds: float
+    why: str = ""
+    """Why it was stopped, in words, where there is more to say than the reason."""
+    type: Literal["ended"] = "ended"
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A tool showed a picture that is not the view of the eyes, e.g. a close-up."""
+
+    step: int
+    frame: str
+    """File name in `frames/`."""
+    width_px: int
+    height_px: int
+    type: Literal["shown"] = "shown"
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A tool call was not executed; the calls of a turn that are left out are its last ones."""
+
+    step: int
+    name: str
+    why: str
+    type: Literal["left_out"] = "left_out"
+
+
+Event = Started | Observed | Thought | Acted | LeftOut | Shown | Ended
+
+
+class Observer(Protocol):
+    """Is told of every event as it happens: records, shows, counts."""
+
+    def notify(self, event: Event, frame: Frame | None = None) -> None:
+        """Take note of an event; `frame` comes with `Observed` and `Shown`."""
+        ...
+
+
+def observed(step: int, view: Observation) -> Observed:
+    """The event of a new view."""
+    frame = view.frame
+    return Observed(
+        step,
+        frame_name(frame),
+        frame.width_px,
+        frame.height_px,
+        view.objects,
+        view.points,
+        view.agent,
+    )
+
+
+def thought(step: int, state_text: str, messages: Sequence[Message], reply: Reply) -> Thought:
+    """The event of a model's reply to a prompt."""
+    return Thought(
+        step,
+        state_text,
+        len(messages),
+        reply.message.text,
+        reply.message.calls,
+        reply.usage,
+        reply.seconds,
+        reply.waited_s,
+        reply.requests,
+        reply.cost_usd,
+        reply.settings,
+        reply.rung,
+        reply.unreadable,
+        reply.message.kept,
+    )
+
+
+def acted(
+    step: int,
+    name: str,
+    arguments: Mapping[str, Any] | None,
+    result: ActionResult,
+    world_s: float,
+) -> Acted:
+    """The event of an executed or refused call."""
+    return Acted(
+        step,
+        name,
+        arguments,
+        result.feedback,
+        result.agent,
+        result.state_hash,
+        result.saved,
+        world_s,
+    )
+
+
+def shown(step: int, frame: Frame) -> Shown:
+    """The event of a picture that a tool showed."""
+    return Shown(step, frame_name(frame), frame.width_px, frame.height_px)
+
+
+def frame_name(frame: Frame) -> str:
+    """File name of a picture: the hash of its content."""
+    suffix = {"image/jpeg": "jpg", "image/png": "png"}[frame.media_type]
+    return f"{hashlib.sha256(frame.data).hexdigest()[:24]}.{suffix}"
+
+
+@cache
+def _codec() -> TypeAdapter[Event]:
+    return TypeAdapter(Annotated[Event, Field(discriminator="type")])
+
+
+class TrajectoryWriter:
+    """Writes events and frames into a run folder, each at once."""
+
+    def __init__(self, folder: Path, *, known: Sequence[Event] | None = None) -> None:
+        """Open a run folder.
+
+        Args:
+            folder: Is made if it is missing.
+            known: Go on with an interrupted episode: these events are the first of the file and
+                will come again; they are not written twice. What the file has after them is lost.
+
+        Raises:
+            RecordError: It already holds an episode.
+        """
+        self._known = deque(known or ())
+        if known is not None:
+            _keep_lines(folder / EVENTS, len(known))
+        elif (folder / EVENTS).exists():
+            raise RecordError(f"{folder} already holds an episode; choose another --out folder.")
+        (folder / FRAMES).mkdir(parents=True, exist_ok=True)
+        self._folder = folder
+        self._file: IO[bytes] = (folder / EVENTS).open("ab")
+
+    def notify(self, event: Event, frame: Frame | None = None) -> None:
+        """Write an event; its frame first, so that no event names a missing picture.
+
+        Raises:
+            RecordError: A known event came out otherwise this time.
+        """
+        if self._known:
+            if not _is_same(event, self._known[0]):
+                raise RecordError(
+                    f"{self._folder} cannot be gone on with: it came out otherwise this time, "
+                    f"{event.type!r} where {self._known[0].type!r} was recorded. Was it recorded "
+                    "by another version or on another kind of machine?"
+                )
+            self._known.popleft()
+            return
+        if frame is not None:
+            path = self._folder / FRAMES / frame_name(frame)
+            if not path.exists():
+                half = path.with_suffix(".part")
+                half.write_bytes(frame.data)
+                os.replace(half, path)
+        self._file.write(_codec().dump_json(event) + b"\n")
+        self._file.flush()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def _keep_lines(path: Path, count: int) -> None:
+    """Keep the first lines, without what a kill left of another."""
+    kept = path.read_bytes().splitlines(keepends=True)[:count]
+    with path.open("r+b") as file:
+        file.truncate(sum(map(len, kept)))
+
+
+def _is_same(event: Event, known: Event) -> bool:
+    """Whether an event came again: in the same state, where it tells one."""
+    states = (getattr(event, "state_hash", ""), getattr(known, "state_hash", ""))
+    return event.type == known.type and states[0] == states[1]
+
+
+class Trajectory:
+    """Keeps events in memory, in order."""
+
+    def __init__(self, events: tuple[Event, ...] = ()) -> None:
+        """Start with events that are already known."""
+        self.events: list[Event] = list(events)
+
+    def notify(self, event: Event, frame: Frame | None = None) -> None:
+        """Keep an event."""
+        self.events.append(event)
+
+    @property
+    def thoughts(self) -> list[Thought]:
+        """Every model turn."""
+        return [e for e in self.events if isinstance(e, Thought)]
+
+    @property
+    def acts(self) -> list[Acted]:
+        """Every tool call that was executed or refused."""
+        return [e for e in self.events if isinstance(e, Acted)]
+
+    @property
+    def views(self) -> list[Observed]:
+        """Every view."""
+        return [e for e in self.events if isinstance(e, Observed)]
+
+    @property
+    def instructions(self) -> list[str]:
+        """Everything the user said, in order; one, unless it was a conversation."""
+        return [e.instruction for e in self.events if isinstance(e, Started)]
+
+    @property
+    def ended(self) -> Ended | None:
+        """How it ended; None if the last instruction did not get that far."""
+        last = self.events[-1] if self.events else None
+        return last if isinstance(last, Ended) else None
+
+
+def read_trajectory(folder: Path) -> Trajectory:
+    """Read a run folder; a last line that a kill cut off is left out.
+
+    Raises:
+        RecordError: There is no episode, or a line in the middle is damaged.
+    """
+    path = folder / EVENTS
+    if not path.is_file():
+        raise RecordError(f"{folder} holds no episode: {EVENTS} is missing.")
+    lines = path.read_bytes().split(b"\n")
+    events: list[Event] = []
+    for number, line in enumerate(lines[:-1], start=1):
+        try:
+            events.append(_codec().validate_json(line))
+        except ValidationError as error:
+            problem = error.errors()[0]["msg"]
+            raise RecordError(
+                f"{path}, line {number} is damaged: {problem}; written by another version?"
+            ) from None
+    return Trajectory(tuple(events))

@@ -1,5 +1,0 @@
-"""How the shipped figures are made: soft shapes, meshed, painted and bound to the skeleton.
-
-Only `tools/bake_human.py` runs this; it needs scikit-image and fast-simplification (the `bake`
-extra). What it makes lies in `human/data` and is read by `adamo_vh.runtime.human.looks`.
-"""

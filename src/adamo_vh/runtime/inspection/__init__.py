@@ -1,0 +1,1 @@
+"""Whether a scene or an engine is sound, and what is wrong if not."""

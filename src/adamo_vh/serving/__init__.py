@@ -1,0 +1,1 @@
+"""The one edge of every server that the package opens."""

@@ -1,0 +1,57 @@
+"""What episodes will take with a model, said before any of them starts."""
+
+from __future__ import annotations
+
+from adamo_vh.benchmark.tasks import task as find_task
+from adamo_vh.cognition.forecast import Forecast, forecast
+from adamo_vh.cognition.memory.short_term import ShortTermMemory
+from adamo_vh.cognition.turns import offered
+from adamo_vh.engine import Engine
+from adamo_vh.episode.result import EpisodeConfig
+from adamo_vh.inference.cost.tokens import estimate_image, estimate_request, rule_for
+from adamo_vh.session.engines import instructions, open_server
+
+USUAL_CALLS = 4.67
+"""Model calls an episode: GPT-4o on S1 in the paper."""
+_TOKENS_PER_CALL = 150
+"""What a call adds to the prompt: its note, its arguments, its feedback, and what changed."""
+_LOOKS_PER_CALL = 0.25
+"""Share of the calls that bring another picture into the prompt."""
+_OUTPUT_PER_CALL = 80
+"""A note of two sentences and a call with its arguments."""
+
+
+def forecast_episodes(config: EpisodeConfig, engine: Engine, episodes: int = 1) -> Forecast:
+    """Forecast what episodes take, from their first prompt.
+
+    The prompt is made exactly; how many calls follow is a guess: for a task one for each of its
+    actions and one for the end, else the paper's mean. Nothing is sent.
+
+    Args:
+        config: How they are set up.
+        engine: Its engine, just reset.
+        episodes: How many there will be.
+
+    Raises:
+        ConfigError: The user's price table is damaged.
+    """
+    profile, rule = config.profile, rule_for(config.model)
+    server = open_server(config, engine)
+    words = instructions(config, engine, server)
+    memory = ShortTermMemory(words, config.k, profile, config.text_form)
+    memory.instruct(config.instruction, server.observe())
+    first = estimate_request(memory.messages(), offered(server.actions, profile), rule)
+    # A profile that keeps only the last pictures does not add any.
+    looks = 0.0 if profile.pictures else _LOOKS_PER_CALL
+    picture = looks * estimate_image(*config.resolution, rule)
+    calls = USUAL_CALLS
+    if config.task is not None:
+        calls = 1.0 + find_task(config.task).computed.act
+    return forecast(
+        config.model,
+        calls_expected=calls,
+        first_request_tokens=first,
+        growth_per_call_tokens=round(_TOKENS_PER_CALL + picture),
+        output_per_call=_OUTPUT_PER_CALL,
+        episodes=episodes,
+    )

@@ -1,0 +1,74 @@
+"""The mind: a model from its URI, recorded runs and cassettes included."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from adamo_vh.action_server.tools import INSPECT, SURVEY, Tool
+from adamo_vh.cognition.profile import PAPER, Profile, StateText
+from adamo_vh.inference.model import Model, ModelKind, Reply, Rung
+from adamo_vh.inference.players.cassette import Cassette
+from adamo_vh.inference.players.resumed import Resumed
+from adamo_vh.inference.players.scripted import ScriptedModel
+from adamo_vh.inference.registry import create_model
+from adamo_vh.record.trajectory import Trajectory, read_trajectory
+
+_REPLAY = "replay:"
+
+
+def create_player(
+    uri: str, *, tools: str = "auto", profile: Profile = PAPER, answered: int = 0
+) -> Model:
+    """The model of a URI.
+
+    Args:
+        uri: As in `adamo_vh.inference.registry.create_model`, or ``replay:RUN_DIR``.
+        tools: How a remote model is asked for calls: "auto", "native", "schema" or "react".
+        profile: Decides whether a remote model may give several calls at once, and whether a
+            cache of its prompt pays.
+        answered: Replies that were given before an interruption; a model that answers from a list
+            leaves them out.
+
+    Raises:
+        ModelConfigError: The model is unknown or lacks a key or an extra.
+        RecordError: A run folder or cassette is missing or damaged.
+    """
+    if uri.startswith(_REPLAY):
+        folder = Path(uri.removeprefix(_REPLAY))
+        model: Model = recorded_model(read_trajectory(folder), uri, answered)
+    else:
+        model = create_model(
+            uri,
+            tools=tools,
+            several_calls=profile.plan > 1,
+            # A state at the front changes with every action, and all behind it would be written
+            # into the cache in vain.
+            cache=profile.state is not StateText.FIRST,
+        )
+    if isinstance(model, ScriptedModel | Cassette):
+        model.skip(answered)
+    return model
+
+
+def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None) -> Profile:
+    """The profile that a model can follow, with the tools that it is given.
+
+    One that is asked for steps as text gives one a turn, and without the tools for close-ups there
+    are none.
+    """
+    if getattr(model, "rung", None) in (Rung.SCHEMA, Rung.REACT):
+        profile = replace(profile, plan=1)
+    if tools is not None and not {INSPECT, SURVEY} <= set(tools):
+        profile = replace(profile, closeups=False, min_confidence=0.0)
+    return profile
+
+
+def recorded_model(trajectory: Trajectory, name: str, answered: int = 0) -> Model:
+    """A model that says again what was said in a recorded episode, what could not be read too."""
+    said = [
+        Reply(thought.reply.message, unreadable=thought.unreadable)
+        for thought in trajectory.thoughts[answered:]
+    ]
+    return Resumed(said, ScriptedModel(name, (), kind=ModelKind.REPLAY))

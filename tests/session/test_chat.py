@@ -1,0 +1,103 @@
+"""Conversations: one world, one memory, and a record that can be gone on with."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.episode.result import EpisodeConfig
+from adamo_vh.errors import RecordError
+from adamo_vh.record.termination import TerminationReason
+from adamo_vh.record.trajectory import EVENTS, Trajectory, read_trajectory
+from adamo_vh.session.chat import ChatSession
+from adamo_vh.session.episode import run_episode
+from adamo_vh.session.replaying import replay_episode
+
+SMALL = (640, 360)
+
+
+def config(instruction: str = "Pick the plate", profile: str = "paper") -> EpisodeConfig:
+    return EpisodeConfig(instruction, resolution=SMALL, profile=PROFILES[profile])
+
+
+@pytest.mark.parametrize("profile", ["paper", "lean"])
+def test_the_second_instruction_knows_the_first(tmp_path: Path, profile: str) -> None:
+    with ChatSession.begin(config(profile=profile), tmp_path) as session:
+        first = session.say("Pick the plate")
+        second = session.say("Put the plate on the floor")
+    assert [first.reason, second.reason] == [TerminationReason.ANSWERED] * 2
+    recorded = read_trajectory(tmp_path)
+    assert recorded.instructions == ["Pick the plate", "Put the plate on the floor"]
+    dropped = [act for act in recorded.acts if act.name == "Drop"]
+    assert "on the floor" in dropped[-1].feedback.text
+    page = (tmp_path / "episode.html").read_text(encoding="utf-8")
+    assert "Put the plate on the floor" in page
+    assert replay_episode(tmp_path).mismatches == ()
+
+
+def test_a_conversation_is_gone_on_with_where_it_was_left(tmp_path: Path) -> None:
+    with ChatSession.begin(config(), tmp_path) as session:
+        left = session.say("Pick the plate")
+    heard = Trajectory()
+    before = (tmp_path / EVENTS).read_bytes()
+    with ChatSession.resume(tmp_path, observers=[heard]) as session:
+        assert (tmp_path / EVENTS).read_bytes() == before
+        assert heard.events == []
+        ended = session.say("Put the plate on the floor")
+    assert ended.state_hash != left.state_hash
+    assert heard.instructions == ["Put the plate on the floor"]
+    assert read_trajectory(tmp_path).instructions[0] == "Pick the plate"
+
+
+def test_an_interrupted_instruction_is_finished_on_the_way_back(tmp_path: Path) -> None:
+    with ChatSession.begin(config("Pick the plate and place it on the floor"), tmp_path) as session:
+        whole = session.say("Pick the plate and place it on the floor")
+    lines = (tmp_path / EVENTS).read_bytes().splitlines(keepends=True)
+    (tmp_path / EVENTS).write_bytes(b"".join(lines[:5]))
+    with ChatSession.resume(tmp_path):
+        pass
+    ended = read_trajectory(tmp_path).ended
+    assert ended is not None
+    assert ended.state_hash == whole.state_hash
+
+
+def test_any_episode_can_become_a_conversation(tmp_path: Path) -> None:
+    run_episode(task="T2", resolution=SMALL, out=tmp_path)
+    with ChatSession.resume(tmp_path) as session:
+        ended = session.say("Put the plate on the floor")
+    assert ended.reason is TerminationReason.ANSWERED
+
+
+def test_a_budget_holds_for_the_whole_conversation(tmp_path: Path) -> None:
+    guard = BudgetGuard(Budget(), Ledger(), Budget(calls=3))
+    with ChatSession.begin(config(), tmp_path, guards=[guard]) as session:
+        session.say("Pick the plate")
+        ended = session.say("Put the plate on the floor")
+    assert ended.reason is TerminationReason.RUN_BUDGET
+    assert "3 of 3 model calls are used" in ended.why
+    assert len(read_trajectory(tmp_path).thoughts) == 3
+
+
+def test_no_conversation_is_begun_on_top_of_another(tmp_path: Path) -> None:
+    ChatSession.begin(config(), tmp_path).close()
+    with ChatSession.begin(config(), tmp_path / "other") as session:
+        session.say("Pick the plate")
+    with pytest.raises(RecordError, match="already holds"):
+        ChatSession.begin(config(), tmp_path / "other")
+    with pytest.raises(RecordError):
+        ChatSession.resume(tmp_path / "nothing")
+
+
+def test_the_command_talks_through_a_pipe(tmp_path: Path) -> None:
+    chat = [sys.executable, "-m", "adamo_vh", "chat", "--out", str(tmp_path / "talk")]
+    run = subprocess.run(
+        chat, input="Pick the key\n\n", capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    assert "Key_34" in run.stdout
+    assert "adamo-vh chat --resume" in run.stdout
