@@ -82,6 +82,18 @@ class ObjectState:
 
 
 @dataclass(frozen=True, slots=True)
+class FurnitureOutline:
+    """A piece of furniture, which never moves, seen from above."""
+
+    name: str
+    points: tuple[tuple[float, float], ...]
+    """Corners of its convex outline, x and y in metres, counter-clockwise."""
+    bottom_m: float
+    """Height of its lowest point: a lamp may hang over a table."""
+    top_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class WorldState:
     """The whole truth. Privileged: for checkers, oracles, diagnosis and snapshots only."""
 
@@ -89,6 +101,8 @@ class WorldState:
     objects: tuple[ObjectState, ...]
     """Ordered by id."""
     body: BodyState
+    furniture: tuple[FurnitureOutline, ...] = ()
+    """For drawings of the room; no part of the hash. May be empty: not every engine knows."""
 
     def object(self, object_id: int) -> ObjectState:
         """The object with an id.

@@ -41,6 +41,16 @@ def test_everything_settles_where_the_scene_says(engine: BuiltinEngine) -> None:
         assert item.box.orientation.matrix()[2, 2] > 0.999
 
 
+def test_the_furniture_is_outlined_from_above(engine: BuiltinEngine) -> None:
+    (table,) = engine.state().furniture
+    xs, ys = zip(*table.points, strict=True)
+    assert (table.name, table.bottom_m) == ("table", 0.0)
+    assert table.top_m == pytest.approx(0.78, abs=0.002)
+    # 1.05 x 1.66 m, centred at (-0.05, -1.0), as the scene has it.
+    assert (min(xs), max(xs)) == pytest.approx((-0.575, 0.475), abs=0.01)
+    assert (min(ys), max(ys)) == pytest.approx((-1.83, -0.17), abs=0.01)
+
+
 def test_what_rests_goes_on_resting(engine: BuiltinEngine) -> None:
     before = engine.state()
     for target in (CUP, KEY, PLATE):

@@ -335,7 +335,7 @@ class BuiltinEngine:
             ObjectState(i, item.class_name, self._world.box(i), supports[i], i == held)
             for i, item in self._world.objects.items()
         )
-        return WorldState(self._info, objects, self._body.state())
+        return WorldState(self._info, objects, self._body.state(), self._world.furniture)
 
     def snapshot(self) -> bytes:
         """World, body and what was said, as compressed JSON."""

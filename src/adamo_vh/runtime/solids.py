@@ -143,6 +143,23 @@ class Solids:
         return np.stack([x * cos + y * sin, y * cos - x * sin, offset[:, 2]], axis=1)
 
 
+def outline(points: Array, directions: int = 32) -> Array:
+    """The convex outline of points: those that are farthest in directions all around.
+
+    Args:
+        points: (N, 2) metres.
+        directions: Evenly spread; so many corners at most.
+
+    Returns:
+        (M, 2) corners, counter-clockwise.
+    """
+    angles = np.arange(directions) * (2 * math.pi / directions)
+    farthest = (points @ np.stack([np.cos(angles), np.sin(angles)])).argmax(axis=0)
+    corners = points[farthest]
+    apart = np.abs(corners - np.roll(corners, 1, axis=0)) > 1e-6
+    return np.asarray(corners[apart.any(axis=1)])
+
+
 def gaps(candidates: Array, shape: Solid, obstacles: list[Solid]) -> Array:
     """How far a rectangle stays from obstacles when its centre is put at each candidate.
 

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo_vh.engine import FLOOR
+from adamo_vh.engine import FLOOR, FurnitureOutline
 from adamo_vh.geometry import Box, Quaternion, Vec3
 from adamo_vh.observation import NOTHING
 from adamo_vh.runtime.assets.asset import Asset, Collider
 from adamo_vh.runtime.embodiment import FOV_Y_RAD
 from adamo_vh.runtime.human.looks import Figure
 from adamo_vh.runtime.scenes.scene import Furniture, Light, PlacedObject, Room, Scene
-from adamo_vh.runtime.solids import Solid
+from adamo_vh.runtime.solids import Solid, outline
 
 if TYPE_CHECKING:
     import mujoco
@@ -69,6 +69,7 @@ class World:
     solids: tuple[Solid, ...]
     """What static furniture occupies, collider by collider."""
     furniture_of_body: dict[int, str]
+    furniture: tuple[FurnitureOutline, ...]
     object_of_geom: NDArray[np.int16]
     start_qpos: NDArray[np.float64]
     """As placed by the scene, before settling."""
@@ -137,6 +138,7 @@ def build_world(scene: Scene, figure: Figure, assets: Mapping[str, Asset] | None
         tuple(surfaces),
         tuple(solids),
         furniture_of_body,
+        tuple(_seen_from_above(piece, assets[piece.asset]) for piece in scene.furniture),
         object_of_geom,
         data.qpos.copy(),
     )
@@ -252,6 +254,19 @@ def furniture_surfaces(piece: Furniture, asset: Asset) -> list[WorldSurface]:
         name = f"{piece.name}/{surface.name}" if several else piece.name
         found.append(WorldSurface(name, Vec3.of(center), *surface.half_size, yaw))
     return found
+
+
+def _seen_from_above(piece: Furniture, asset: Asset) -> FurnitureOutline:
+    vertices = np.concatenate([part.vertices for part in asset.parts]).astype(np.float64)
+    turn = Quaternion.from_yaw(math.radians(piece.yaw_deg)).matrix()[:2, :2]
+    corners = (outline(vertices[:, :2]) @ turn.T + piece.position).round(3) + 0.0
+    heights = vertices[:, 2].round(3) + 0.0
+    return FurnitureOutline(
+        piece.name,
+        tuple((float(x), float(y)) for x, y in corners),
+        float(heights.min()),
+        float(heights.max()),
+    )
 
 
 def furniture_solids(piece: Furniture, asset: Asset) -> list[Solid]:

@@ -65,6 +65,17 @@ def engine(living_room: BuiltinEngine) -> BuiltinEngine:
     return living_room
 
 
+def test_the_outlines_from_above_are_turned_as_the_furniture_is(engine: BuiltinEngine) -> None:
+    pieces = {piece.name: piece for piece in engine.state().furniture}
+    assert set(FURNITURE) <= set(pieces)
+    for name, ((x, y), heading_deg, (width, depth, _)) in FURNITURE.items():
+        turn = math.radians(heading_deg)
+        along = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+        local = (np.array(pieces[name].points) - [x, y]) @ along.T
+        assert np.ptp(local, axis=0) == pytest.approx([width, depth], abs=0.05)
+    assert pieces["pendant lamp"].bottom_m > 1.9
+
+
 @pytest.fixture(scope="module")
 def world() -> World:
     """The compiled scene, before anything settles."""
