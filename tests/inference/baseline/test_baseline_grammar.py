@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from tests.inference.baseline.rewordings import REWORDINGS
 
 from adamo_vh.benchmark.tasks import TASKS
-from adamo_vh.inference.baseline.goals import Description, Goal, Relation, Size
-from adamo_vh.inference.baseline.grammar import understand
-from adamo_vh.inference.baseline.lexicon import class_words, tokenize
-from adamo_vh.inference.baseline.prototypes import prototypes
+from adamo_vh.inference.baseline.language.grammar import understand
+from adamo_vh.inference.baseline.language.plan import Description, Goal, Relation, Size
+from adamo_vh.inference.baseline.language.words import class_words, tokenize
+from adamo_vh.inference.baseline.sight.kinds import prototypes
 
 
 def _thing(description: Description) -> str:

@@ -11,8 +11,8 @@ from tests.inference.baseline.test_baseline_policy import ENDS, PROMPT, check
 
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.baseline import BaselineModel
-from adamo_vh.inference.baseline.manner import manner_of
-from adamo_vh.inference.baseline.reading import read_prompt
+from adamo_vh.inference.baseline.prompt.reading import read_prompt
+from adamo_vh.inference.baseline.prompt.speaking import manner_of
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,

@@ -11,12 +11,11 @@ from tests.inference.baseline.room import TOOLS, TextRoom
 
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.baseline import BaselineModel
-from adamo_vh.inference.baseline.classes import classify
-from adamo_vh.inference.baseline.grammar import understand
-from adamo_vh.inference.baseline.grounding import degree, thing_of
-from adamo_vh.inference.baseline.ocr import PrintReader, installed
-from adamo_vh.inference.baseline.sight import Sight
-from adamo_vh.inference.baseline.words import named_kinds
+from adamo_vh.inference.baseline.language.grammar import understand
+from adamo_vh.inference.baseline.mind.choosing import degree, thing_of
+from adamo_vh.inference.baseline.sight.kinds import classify
+from adamo_vh.inference.baseline.sight.measures import Sight
+from adamo_vh.inference.baseline.sight.printed import PrintReader, installed, named_kinds
 from adamo_vh.inference.model import Sampling
 
 

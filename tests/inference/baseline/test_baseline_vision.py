@@ -10,18 +10,14 @@ import numpy as np
 import pytest
 
 from adamo_vh.geometry import Camera, Vec3
-from adamo_vh.inference.baseline.classes import classify
-from adamo_vh.inference.baseline.colours import shares
-from adamo_vh.inference.baseline.drawn import brightest, drawn_over
-from adamo_vh.inference.baseline.grammar import understand
-from adamo_vh.inference.baseline.grounding import degree, thing_of
-from adamo_vh.inference.baseline.print_marks import print_share
-from adamo_vh.inference.baseline.prototypes import prototypes
-from adamo_vh.inference.baseline.reading import Body, Listed, Prompt, Room
-from adamo_vh.inference.baseline.sight import Sight
-from adamo_vh.inference.baseline.silhouettes import misfits
-from adamo_vh.inference.baseline.view import camera_of
-from adamo_vh.inference.baseline.vision import boxed, sights
+from adamo_vh.inference.baseline.language.grammar import understand
+from adamo_vh.inference.baseline.mind.choosing import degree, thing_of
+from adamo_vh.inference.baseline.prompt.reading import Body, Listed, Prompt, Room
+from adamo_vh.inference.baseline.sight.kinds import classify, prototypes
+from adamo_vh.inference.baseline.sight.looking import boxed, sights
+from adamo_vh.inference.baseline.sight.marks import brightest, drawn_over, print_share
+from adamo_vh.inference.baseline.sight.measures import Sight, shares
+from adamo_vh.inference.baseline.sight.outlines import camera_of, misfits
 from adamo_vh.inference.messages import ImagePart
 
 WOOD = (70, 105, 140)

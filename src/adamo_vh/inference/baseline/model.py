@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.baseline.grammar import understand
-from adamo_vh.inference.baseline.manner import manner_of
-from adamo_vh.inference.baseline.ocr import MISSING, PrintReader, installed
-from adamo_vh.inference.baseline.policy import decide
-from adamo_vh.inference.baseline.reading import read_prompt
-from adamo_vh.inference.baseline.saying import say
+from adamo_vh.inference.baseline.language.grammar import understand
+from adamo_vh.inference.baseline.mind.policy import decide
+from adamo_vh.inference.baseline.prompt.reading import read_prompt
+from adamo_vh.inference.baseline.prompt.speaking import manner_of, say
+from adamo_vh.inference.baseline.sight.printed import MISSING, PrintReader, installed
 from adamo_vh.inference.messages import Message
 from adamo_vh.inference.model import ModelKind, Reply, Sampling
 

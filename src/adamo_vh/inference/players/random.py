@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.baseline.reading import Prompt, read_prompt
+from adamo_vh.inference.baseline.prompt.reading import Prompt, read_prompt
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,

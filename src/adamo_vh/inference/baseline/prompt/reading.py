@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.baseline.state_text import Body, Listed, StateReader, first_point
+from adamo_vh.inference.baseline.prompt.state_text import Body, Listed, StateReader, first_point
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,

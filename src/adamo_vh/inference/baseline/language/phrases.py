@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from adamo_vh.inference.baseline.goals import Description, Relation, Size
-from adamo_vh.inference.baseline.lexicon import Kind, Token, is_plural
+from adamo_vh.inference.baseline.language.plan import Description, Relation, Size
+from adamo_vh.inference.baseline.language.words import Kind, Token, is_plural
 
 _BEFORE_NOUN = frozenset(
     {Kind.DET, Kind.EVERY, Kind.COUNT, Kind.COLOUR, Kind.SHAPE, Kind.GLASSY, Kind.SIZE}

@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from adamo_vh.inference.baseline import ledger
-from adamo_vh.inference.baseline.classes import Beliefs, classify, likeliest
-from adamo_vh.inference.baseline.closeups import closeup_sight
-from adamo_vh.inference.baseline.goals import Description, Plan
-from adamo_vh.inference.baseline.grounding import degree, thing_of
-from adamo_vh.inference.baseline.happenings import FAR_M, happened
-from adamo_vh.inference.baseline.memory import Memory, Search, Slot, Thing
-from adamo_vh.inference.baseline.prototypes import class_of
-from adamo_vh.inference.baseline.reading import Event, Prompt, Turn
-from adamo_vh.inference.baseline.sight import Sight
-from adamo_vh.inference.baseline.vision import boxed, sights
-from adamo_vh.inference.baseline.words import WordReader
+from adamo_vh.inference.baseline.language.plan import Description, Plan
+from adamo_vh.inference.baseline.mind import ledger
+from adamo_vh.inference.baseline.mind.choosing import degree, thing_of
+from adamo_vh.inference.baseline.mind.happenings import FAR_M, happened
+from adamo_vh.inference.baseline.mind.memory import Memory, Search, Slot, Thing
+from adamo_vh.inference.baseline.prompt.reading import Event, Prompt, Turn
+from adamo_vh.inference.baseline.sight.closeups import closeup_sight
+from adamo_vh.inference.baseline.sight.kinds import Beliefs, class_of, classify, likeliest
+from adamo_vh.inference.baseline.sight.looking import boxed, sights
+from adamo_vh.inference.baseline.sight.measures import Sight
+from adamo_vh.inference.baseline.sight.printed import WordReader
 
 _NEVER_M = 99.0
 _CLOSER = 0.9

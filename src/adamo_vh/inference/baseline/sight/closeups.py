@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from adamo_vh.inference.baseline.colours import shares, white_level
-from adamo_vh.inference.baseline.drawn import Mask, Picture, PixelBox, brightest, clipped
-from adamo_vh.inference.baseline.print_marks import print_share
-from adamo_vh.inference.baseline.sight import Sight
-from adamo_vh.inference.baseline.vision import decoded, own_pixels, roundness
-from adamo_vh.inference.baseline.words import WordReader
+from adamo_vh.inference.baseline.sight.looking import decoded, own_pixels, roundness
+from adamo_vh.inference.baseline.sight.marks import (
+    Mask,
+    Picture,
+    PixelBox,
+    brightest,
+    clipped,
+    print_share,
+)
+from adamo_vh.inference.baseline.sight.measures import Sight, shares, white_level
+from adamo_vh.inference.baseline.sight.printed import WordReader
 from adamo_vh.inference.messages import ImagePart
 
 _STRIP_DARK = 50

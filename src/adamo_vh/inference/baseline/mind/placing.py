@@ -8,9 +8,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from adamo_vh.geometry import Array, Vec3
-from adamo_vh.inference.baseline.goals import Goal, Relation
-from adamo_vh.inference.baseline.memory import Job, Memory, Thing
-from adamo_vh.inference.baseline.reading import Prompt, Room
+from adamo_vh.inference.baseline.language.plan import Goal, Relation
+from adamo_vh.inference.baseline.mind.memory import Job, Memory, Thing
+from adamo_vh.inference.baseline.prompt.reading import Prompt, Room
 
 _GAP_M = 0.02
 _LEVEL_M = 0.12

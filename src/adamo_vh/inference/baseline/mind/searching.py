@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.baseline.happenings import FAR_M
-from adamo_vh.inference.baseline.memory import Memory, Search, Thing
-from adamo_vh.inference.baseline.reading import Prompt, Room
+from adamo_vh.inference.baseline.mind.happenings import FAR_M
+from adamo_vh.inference.baseline.mind.memory import Memory, Search, Thing
+from adamo_vh.inference.baseline.prompt.reading import Prompt, Room
 
 SURVEY = 3
 """Steps of the first round: with the first frame they show the whole circle."""

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.geometry import Camera
-from adamo_vh.inference.baseline.drawn import PixelBox
-from adamo_vh.inference.baseline.state_text import Listed
+from adamo_vh.inference.baseline.prompt.state_text import Listed
+from adamo_vh.inference.baseline.sight.marks import PixelBox
 
 Counts = NDArray[np.int32]
 Places = NDArray[np.intp]

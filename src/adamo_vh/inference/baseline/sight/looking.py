@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.geometry import Camera
-from adamo_vh.inference.baseline.colours import shares, white_level
-from adamo_vh.inference.baseline.drawn import (
+from adamo_vh.inference.baseline.prompt.reading import Listed, Prompt
+from adamo_vh.inference.baseline.sight.boxes import with_boxes
+from adamo_vh.inference.baseline.sight.marks import (
     INK_BELOW,
     Mask,
     Picture,
@@ -23,14 +24,11 @@ from adamo_vh.inference.baseline.drawn import (
     brightest,
     clipped,
     drawn_over,
+    print_share,
 )
-from adamo_vh.inference.baseline.drawn_boxes import with_boxes
-from adamo_vh.inference.baseline.print_marks import print_share
-from adamo_vh.inference.baseline.reading import Listed, Prompt
-from adamo_vh.inference.baseline.sight import Sight
-from adamo_vh.inference.baseline.silhouettes import misfits
-from adamo_vh.inference.baseline.view import camera_of
-from adamo_vh.inference.baseline.words import WordReader
+from adamo_vh.inference.baseline.sight.measures import Sight, shares, white_level
+from adamo_vh.inference.baseline.sight.outlines import camera_of, misfits
+from adamo_vh.inference.baseline.sight.printed import WordReader
 
 Masks = Mapping[str, tuple[Mask, float]]
 

@@ -13,9 +13,9 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.baseline.grounding import thing_of
-from adamo_vh.inference.baseline.memory import Job, Memory, Search, Slot, Status, Thing
-from adamo_vh.inference.baseline.prototypes import prototypes
+from adamo_vh.inference.baseline.mind.choosing import thing_of
+from adamo_vh.inference.baseline.mind.memory import Job, Memory, Search, Slot, Status, Thing
+from adamo_vh.inference.baseline.sight.kinds import prototypes
 
 _LINE = re.compile(r"\[#(\d{1,4})(!?)((?: [^\s\[\]]+)*)\]")
 _STATUS = {Status.TODO: "", Status.DONE: "+", Status.FAILED: "-"}

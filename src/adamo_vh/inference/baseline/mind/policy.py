@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.baseline import choosing, ledger, placing, searching
-from adamo_vh.inference.baseline.answering import finish
-from adamo_vh.inference.baseline.beliefs import (
+from adamo_vh.inference.baseline.language.plan import Plan, Relation
+from adamo_vh.inference.baseline.mind import choosing, ledger, placing, searching
+from adamo_vh.inference.baseline.mind.answering import finish
+from adamo_vh.inference.baseline.mind.beliefs import (
     judge_by_text,
     look,
     needs_pixels,
@@ -16,15 +17,22 @@ from adamo_vh.inference.baseline.beliefs import (
     settled,
     since_whole,
 )
-from adamo_vh.inference.baseline.goals import Plan, Relation
-from adamo_vh.inference.baseline.happenings import FAR_M, anchor_of, current_job
-from adamo_vh.inference.baseline.imagining import imagined
-from adamo_vh.inference.baseline.manner import Manner
-from adamo_vh.inference.baseline.memory import Job, Memory, Search, Status, Thing
-from adamo_vh.inference.baseline.prototypes import class_of
-from adamo_vh.inference.baseline.reading import Prompt
-from adamo_vh.inference.baseline.steps import Finish, Move, Step, to_point
-from adamo_vh.inference.baseline.words import WordReader
+from adamo_vh.inference.baseline.mind.happenings import FAR_M, anchor_of, current_job, imagined
+from adamo_vh.inference.baseline.mind.memory import (
+    Finish,
+    Job,
+    Memory,
+    Move,
+    Search,
+    Status,
+    Step,
+    Thing,
+    to_point,
+)
+from adamo_vh.inference.baseline.prompt.reading import Prompt
+from adamo_vh.inference.baseline.prompt.speaking import Manner
+from adamo_vh.inference.baseline.sight.kinds import class_of
+from adamo_vh.inference.baseline.sight.printed import WordReader
 
 _MAX_ASIDE = 4
 """Tries to empty the hand in an episode, after which it stays as it is."""

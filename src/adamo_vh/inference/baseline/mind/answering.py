@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from adamo_vh.inference.baseline.goals import Goal, Plan, Relation
-from adamo_vh.inference.baseline.memory import Job, Memory, Status
-from adamo_vh.inference.baseline.searching import Stage
-from adamo_vh.inference.baseline.steps import Finish
+from adamo_vh.inference.baseline.language.plan import Goal, Plan, Relation
+from adamo_vh.inference.baseline.mind.memory import Finish, Job, Memory, Status
+from adamo_vh.inference.baseline.mind.searching import Stage
 
 _SURE = 0.5
 _NOTHING_FOUND = 0.6

@@ -15,10 +15,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
-from adamo_vh.inference.baseline.goals import Description, Goal, Plan, Relation
-from adamo_vh.inference.baseline.lexicon import Kind, Token, tokenize
-from adamo_vh.inference.baseline.phrases import Cursor, NotUnderstood, noun_phrase, starts_phrase
-from adamo_vh.inference.baseline.rephrasing import rephrased
+from adamo_vh.inference.baseline.language.phrases import (
+    Cursor,
+    NotUnderstood,
+    noun_phrase,
+    starts_phrase,
+)
+from adamo_vh.inference.baseline.language.plan import Description, Goal, Plan, Relation
+from adamo_vh.inference.baseline.language.rephrasing import rephrased
+from adamo_vh.inference.baseline.language.words import Kind, Token, tokenize
 
 _VERBS = (Kind.TAKE, Kind.FIND, Kind.PUT, Kind.BRING)
 _PLACES = (Kind.ON, Kind.IN, Kind.TO, Kind.NEAR, Kind.THERE, Kind.HELD)
