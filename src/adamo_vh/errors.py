@@ -4,6 +4,7 @@
 
     AdamoError
     ├── ConfigError            a setting or argument of the caller is wrong; nothing was started
+    ├── FileError              a file cannot be read or written: names it, the reason and the fix
     ├── SceneError             a scene file is wrong: names the file, the field and the fix
     ├── InvalidActionError     a tool call is no valid action; carries the feedback for the model
     ├── EngineError            the world itself failed
@@ -29,6 +30,10 @@ class AdamoError(Exception):
 
 class ConfigError(AdamoError):
     """A setting or argument of the caller is wrong."""
+
+
+class FileError(AdamoError):
+    """A file cannot be read or written, or is not what it should be."""
 
 
 class SceneError(AdamoError):
