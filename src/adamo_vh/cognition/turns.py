@@ -76,7 +76,7 @@ def _with_note(schema: ToolSchema) -> ToolSchema:
 def read_turn(reply: Reply, profile: Profile) -> Turn:
     """Read a reply."""
     wishes = tuple(_wish(call, profile) for call in reply.message.calls)
-    return Turn(reply.message, wishes, reply.unreadable)
+    return Turn(reply.message, wishes, reply.unreadable, reply.ending)
 
 
 def _wish(call: ToolCall, profile: Profile) -> Wish:

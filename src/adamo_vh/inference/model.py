@@ -75,6 +75,28 @@ class Rung(StrEnum):
     """No tools and no schema: Thought, Action and Action Input as text."""
 
 
+class Ending(StrEnum):
+    """What a reply is; each is exactly one of these."""
+
+    CALL = "call"
+    """One call or several, to be executed."""
+    ANSWER = "answer"
+    """Text alone, which the model ended itself: the final answer."""
+    CUT_OFF = "cut_off"
+    """Stopped before its end: at a limit of tokens, by a pause, or by an abort."""
+    UNPARSED_CALL = "unparsed_call"
+    """Meant as a call, or as a step in the agreed form, that cannot be read."""
+    EMPTY = "empty"
+    """Ended by the model itself, with nothing in it."""
+    FILTERED = "filtered"
+    """Refused or stopped by a filter of the provider."""
+
+    @property
+    def is_failure(self) -> bool:
+        """Whether it is neither a call nor an answer: a counted protocol failure."""
+        return self not in (Ending.CALL, Ending.ANSWER)
+
+
 @dataclass(frozen=True, slots=True)
 class Reply:
     """One answer of a model."""
@@ -95,8 +117,25 @@ class Reply:
     rung: Rung | None = None
     """How the answer was asked for; None for models without a wire."""
     unreadable: str = ""
-    """Why the answer is neither a valid call nor a final answer, although the model was asked to
-    repair it; empty if it is one. A counted protocol failure."""
+    """What is wrong with the answer, as a sentence without its subject, for the model ("was cut off
+    after 50 tokens."); empty if it is a call or a final answer, or if nothing was said at all."""
+    ending: Ending = None  # type: ignore[assignment]  # Never None once it is made.
+    """What the answer is; follows from the message if it is left out."""
+    finish_reason: str = ""
+    """Why the answer ended, in the provider's own word; empty if there is none."""
+
+    def __post_init__(self) -> None:
+        """Tell what the answer is, where the model did not."""
+        if self.ending is None:
+            object.__setattr__(self, "ending", _ending(self))
+
+
+def _ending(reply: Reply) -> Ending:
+    if reply.unreadable:
+        return Ending.UNPARSED_CALL
+    if reply.message.calls:
+        return Ending.CALL
+    return Ending.ANSWER if reply.message.text.strip() else Ending.EMPTY
 
 
 class Model(Protocol):

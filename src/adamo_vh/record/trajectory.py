@@ -22,7 +22,7 @@ from adamo_vh.action import Feedback
 from adamo_vh.action_server import ActionResult
 from adamo_vh.errors import RecordError
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
-from adamo_vh.inference.model import Reply, Rung, Usage
+from adamo_vh.inference.model import Ending, Reply, Rung, Usage
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.turn import reasoning
@@ -79,9 +79,13 @@ class Thought:
     """The decoding settings in effect."""
     rung: Rung | None = None
     unreadable: str = ""
-    """Why this is a protocol failure; empty if it is none."""
+    """What is wrong with the reply; see `Reply.unreadable`."""
     kept: str = ""
     """What the provider wants back with this answer; see `AIMessage.kept`."""
+    ending: Ending | None = None
+    """What the reply is; None in records of earlier versions."""
+    finish_reason: str = ""
+    """Why the reply ended, in the provider's own word."""
     type: Literal["thought"] = "thought"
 
     @property
@@ -97,6 +101,8 @@ class Thought:
             self.settings,
             self.rung,
             self.unreadable,
+            **({} if self.ending is None else {"ending": self.ending}),
+            finish_reason=self.finish_reason,
         )
 
     @property
@@ -200,6 +206,8 @@ def thought(step: int, state_text: str, messages: Sequence[Message], reply: Repl
         reply.rung,
         reply.unreadable,
         reply.message.kept,
+        reply.ending,
+        reply.finish_reason,
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from adamo_vh.inference.messages import AIMessage, ToolCall
+from adamo_vh.inference.model import Ending
 from adamo_vh.record.termination import TerminationReason
 
 NOTE = "note"
@@ -39,7 +40,9 @@ class Turn:
     message: AIMessage
     wishes: tuple[Wish, ...] = ()
     unreadable: str = ""
-    """Why it is neither a call nor an answer; empty if it is one."""
+    """What is wrong with it; see `Reply.unreadable`. Empty if it is a call or an answer."""
+    ending: Ending = Ending.ANSWER
+    """What the reply is."""
 
     @property
     def is_empty(self) -> bool:

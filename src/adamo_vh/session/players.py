@@ -68,7 +68,12 @@ def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None)
 def recorded_model(trajectory: Trajectory, name: str, answered: int = 0) -> Model:
     """A model that says again what was said in a recorded episode, what could not be read too."""
     said = [
-        Reply(thought.reply.message, unreadable=thought.unreadable)
+        Reply(
+            thought.reply.message,
+            unreadable=thought.unreadable,
+            ending=thought.reply.ending,
+            finish_reason=thought.finish_reason,
+        )
         for thought in trajectory.thoughts[answered:]
     ]
     return Resumed(said, ScriptedModel(name, (), kind=ModelKind.REPLAY))

@@ -131,6 +131,7 @@ def clean_reply(reply: Reply, clean: Clean = without_keys) -> Reply:
         message=_clean_answer(reply.message, clean),
         settings=_cleaned(dict(reply.settings), clean),
         unreadable=clean(reply.unreadable),
+        finish_reason=clean(reply.finish_reason),
     )
 
 
