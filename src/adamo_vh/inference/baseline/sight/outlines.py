@@ -122,7 +122,7 @@ _EYES_M = 1.6
 """Height of a grown person's eyes."""
 _EYES_AHEAD_M = 0.08
 """How far they are in front of the body's axis."""
-_USUAL_FOV_RAD = math.radians(65)
+_USUAL_FOV_RAD = math.radians(74)
 _OFF_AXIS = 0.12
 """Things nearer to the axis (as a tangent) say too little about the focal length."""
 
