@@ -73,17 +73,17 @@ def measure(scene: str, repeats: int) -> dict[str, float]:
     def observe() -> object:
         engine.stage.forget()
         seen = engine.capture(WIDTH, HEIGHT)
-        return perceive(seen, engine.raycast, config, engine.object_names)
+        return perceive(seen, engine.body.rays, config, engine.object_names)
 
     def overlay() -> object:
-        return perceive(percept, engine.raycast, config, engine.object_names)
+        return perceive(percept, engine.body.rays, config, engine.object_names)
 
     figures = {
         "observe_ms": median_ms(observe, repeats),
         "render_ms": median_ms(lambda: renderer.color(data, camera), repeats),
         "ids_ms": median_ms(lambda: renderer.layers(data, camera), repeats),
         "visibility_ms": median_ms(lambda: visible_objects(percept, config.min_pixels), repeats),
-        "points_ms": median_ms(lambda: reference_points(camera, engine.raycast, 6), repeats),
+        "points_ms": median_ms(lambda: reference_points(camera, engine.body.rays, 6), repeats),
         "perceive_ms": median_ms(overlay, repeats),
     }
     figures["overlay_ms"] = figures["perceive_ms"] - figures["visibility_ms"] - figures["points_ms"]

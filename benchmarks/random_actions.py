@@ -114,14 +114,16 @@ class RandomPlayer:
                 faults.append("a snapshot came back as another state")
         if tally.actions % self._view_every == 0:
             tally.views += 1
-            faults += view_faults(engine.capture(*RESOLUTION), server.observe(), self._ids, after)
+            faults += view_faults(
+                engine.capture(*RESOLUTION), server.observe().observation, self._ids, after
+            )
         return faults
 
     def _call(self, choose: random.Random) -> tuple[str, dict[str, Any] | None]:
         """A call as a model would write it; about one in twelve is nonsense."""
         if choose.random() < 0.08:
             return choose.choice(NONSENSE)
-        held = self._engine.body().held
+        held = self._engine.body.state().held
         tags = {i: tag for tag, i in self._ids.items()}
         point = self._point(choose)
         kind = choose.random()

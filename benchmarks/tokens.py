@@ -29,7 +29,7 @@ from adamo_vh.benchmark.oracle import Oracle
 from adamo_vh.benchmark.tasks import TASKS, Task
 from adamo_vh.cognition.profile import PROFILES, Profile, profile
 from adamo_vh.cognition.turns import FINISH
-from adamo_vh.engine import Engine
+from adamo_vh.engine import World
 from adamo_vh.inference.cost.tokens import (
     ANTHROPIC,
     GEMINI,
@@ -134,7 +134,7 @@ def _note(name: str, arguments: dict[str, Any]) -> str:
     )
 
 
-def oracle_actions(engine: Engine, task: Task) -> list[Action]:
+def oracle_actions(engine: World, task: Task) -> list[Action]:
     """What the oracle does, played once without pictures of any size that matters."""
     engine.reset(0)
     server = LocalActionServer(engine, perception=PerceptionConfig(grid=0), resolution=(1920, 1080))
@@ -160,7 +160,7 @@ class Row:
 
 
 def measure(
-    engine: Engine,
+    engine: World,
     chosen: Profile,
     plans: dict[str, list[Action]],
     rule: ImageRule,

@@ -68,10 +68,10 @@ def actions_ms(engine: BuiltinEngine, things: int) -> dict[str, float]:
     engine.reset(0)
     for count, item in enumerate(engine.state().objects[:things]):
         home, place = item.box.center, PLACES[count % len(PLACES)]
-        samples["look_ms"].append(timed_ms(partial(engine.look_at, home)))
-        samples["pick_ms"].append(timed_ms(partial(engine.pick, item.id)))
-        samples["walk_ms"].append(timed_ms(partial(engine.walk_to, place)))
-        samples["drop_ms"].append(timed_ms(partial(engine.drop, home)))
+        samples["look_ms"].append(timed_ms(partial(engine.body.look, home)))
+        samples["pick_ms"].append(timed_ms(partial(engine.body.pick, item.id)))
+        samples["walk_ms"].append(timed_ms(partial(engine.body.walk, place)))
+        samples["drop_ms"].append(timed_ms(partial(engine.body.drop, home)))
     return {name: statistics.median(values) for name, values in samples.items()}
 
 
@@ -99,10 +99,10 @@ def growth_mb(engine: BuiltinEngine, episodes: int) -> float:
             gc.collect()
             before = resident_mb()
         engine.reset(episode)
-        engine.pick(ids[episode % len(ids)])
-        engine.walk_to(PLACES[episode % len(PLACES)])
-        engine.drop(PLACES[(episode + 1) % len(PLACES)])
-        engine.look_at(Vec3(0.0, -1.0, 0.8))
+        engine.body.pick(ids[episode % len(ids)])
+        engine.body.walk(PLACES[episode % len(PLACES)])
+        engine.body.drop(PLACES[(episode + 1) % len(PLACES)])
+        engine.body.look(Vec3(0.0, -1.0, 0.8))
         LocalActionServer(engine, resolution=SMALL).observe()
     gc.collect()
     return resident_mb() - before

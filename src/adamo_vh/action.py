@@ -118,6 +118,8 @@ class Code(StrEnum):
     PLACED_ELSEWHERE = "placed_elsewhere"
     """Drop went to the nearest free spot."""
 
+    MOVED_INSIDE = "moved_inside"
+    """The point was a little outside the room; the nearest one inside was taken."""
     CANCELLED = "cancelled"
     """Stopped on request, before the end."""
 
@@ -130,9 +132,9 @@ class Code(StrEnum):
     HAND_FULL = "hand_full"
     HAND_EMPTY = "hand_empty"
     NOT_HELD = "not_held"
-    NOT_EXECUTED = "not_executed"
-    """A further call in the same turn."""
 
+    GONE = "gone"
+    """The object is not in the room any more."""
     UNREACHABLE = "unreachable"
     NO_FREE_SPOT = "no_free_spot"
 

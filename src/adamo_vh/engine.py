@@ -1,7 +1,8 @@
 """What any 3D engine must offer to carry an agent, and the world's state as plain data.
 
-An engine knows bodies and physics. It knows nothing of tags, prompts, models or tasks. The built-in
-one is `adamo_vh.runtime.builtin.BuiltinEngine`; others follow the same protocol.
+An engine is a `World` with one `Body` or several in it. It knows bodies and physics, and nothing of
+tags, prompts, models or tasks. The built-in one is `adamo_vh.runtime.builtin.BuiltinEngine`; others
+follow the same two protocols, and `adamo_vh.action_server.engine_check` tells what they lack.
 """
 
 from __future__ import annotations
@@ -9,9 +10,10 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 from adamo_vh.action import Outcome
+from adamo_vh.errors import EngineError
 from adamo_vh.geometry import Array, Box, Vec3
 from adamo_vh.observation import BodyState, Percept
 
@@ -45,7 +47,7 @@ class Area:
 
 @dataclass(frozen=True, slots=True)
 class SceneInfo:
-    """What is public about a scene: its name, extent and named floor areas."""
+    """What is public about a scene: its name, origin, extent and named floor areas."""
 
     name: str
     x_min: float
@@ -54,11 +56,19 @@ class SceneInfo:
     y_max: float
     height_m: float
     areas: tuple[Area, ...]
+    source: str = ""
+    """Where it comes from: "built-in", the path of a file, or what an engine says of itself."""
+    digest: str = ""
+    """Digest over all that decides how it starts and looks: furniture, objects, lights, figure.
+    Empty if the engine does not say; two scenes with the same digest give the same episode."""
 
-    def contains(self, point: Vec3, margin_m: float = 0.05) -> bool:
-        """Whether a point is in the room, up to a margin."""
-        between = -margin_m <= point.z <= self.height_m + margin_m
-        return between and self.is_within_walls(point, margin_m)
+    def nearest(self, point: Vec3) -> Vec3:
+        """The point of the room that is nearest to a point: itself, if it is inside."""
+        return Vec3(
+            min(max(point.x, self.x_min), self.x_max),
+            min(max(point.y, self.y_min), self.y_max),
+            min(max(point.z, 0.0), self.height_m),
+        )
 
     def is_within_walls(self, point: Vec3, margin_m: float) -> bool:
         """Whether a point is between the walls, up to a margin; a negative one keeps off them."""
@@ -152,25 +162,83 @@ class BodyReport:
     """Length of the path that the body walked."""
 
 
-class Engine(Protocol):
-    """A 3D world with one body in it."""
+@dataclass(frozen=True, slots=True)
+class BodyInfo:
+    """What is always true of a body: who it is, how large, and how far it reaches."""
+
+    figure: str
+    """Who it looks like, e.g. "mara"."""
+    radius_m: float
+    """Free floor that it needs around its axis."""
+    eye_height_m: float
+    fov_y_rad: float
+    """Vertical field of view of its eyes."""
+    reach_m: float
+    """Largest horizontal distance of its axis from what it handles."""
+    reach_top_m: float
+    """Highest point that its hand reaches."""
+    correction_m: float
+    """How far from the wished point it may put a thing down; nothing free nearer is a refusal."""
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectMoved:
+    """Somebody else puts an object down elsewhere: at the free place nearest to a point."""
+
+    object_id: int
+    point: Vec3
+    type: Literal["object_moved"] = "object_moved"
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectTaken:
+    """Somebody else takes an object out of the room."""
+
+    object_id: int
+    type: Literal["object_taken"] = "object_taken"
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectAdded:
+    """Somebody else brings an object in, and puts it at the free place nearest to a point."""
+
+    object_id: int
+    point: Vec3
+    type: Literal["object_added"] = "object_added"
+
+
+@dataclass(frozen=True, slots=True)
+class LightChanged:
+    """A light of the scene becomes brighter or darker."""
+
+    light: int
+    """Its number in the scene, from 0."""
+    diffuse: float
+    """How bright it is then, 0 (off) to 1."""
+    type: Literal["light_changed"] = "light_changed"
+
+
+WorldEvent = ObjectMoved | ObjectTaken | ObjectAdded | LightChanged
+"""What happens to a world without its bodies; `type` tells them apart in a record."""
+
+
+class Body(Protocol):
+    """One body in a world: what it senses and what it can do.
+
+    Nothing here tells more than the body can know: what leads to the model goes through it.
+    """
 
     @property
-    def scene(self) -> SceneInfo:
-        """Name, extent and areas of the loaded scene."""
+    def info(self) -> BodyInfo:
+        """What is always true of it."""
         ...
 
-    @property
-    def object_names(self) -> Mapping[int, str]:
-        """Class of every interactable object, by id; labelings make tags of it."""
+    def state(self) -> BodyState:
+        """Where it stands and looks now, and what it feels in its hand."""
         ...
 
-    def reset(self, seed: int) -> None:
-        """Put the world and the body back to their start. Same seed, same world."""
-        ...
-
-    def capture(self, width_px: int, height_px: int) -> Percept:
-        """See the room through the body's eyes."""
+    def see(self, width_px: int, height_px: int) -> Percept:
+        """See the room through its eyes."""
         ...
 
     def closeup(
@@ -182,8 +250,8 @@ class Engine(Protocol):
         """
         ...
 
-    def raycast(self, origin: Vec3, directions: Array) -> Sequence[Vec3 | None]:
-        """First hits of rays from a point; own body and held object are ignored.
+    def rays(self, origin: Vec3, directions: Array) -> Sequence[Vec3 | None]:
+        """First hits of rays from a point; the body itself and what it holds are ignored.
 
         Args:
             origin: Start of all rays, metres.
@@ -194,15 +262,11 @@ class Engine(Protocol):
         """
         ...
 
-    def body(self) -> BodyState:
-        """The body now."""
-        ...
-
-    def look_at(self, point: Vec3) -> BodyReport:
+    def look(self, point: Vec3) -> BodyReport:
         """Turn body and gaze to a point."""
         ...
 
-    def walk_to(self, point: Vec3) -> BodyReport:
+    def walk(self, point: Vec3) -> BodyReport:
         """Walk to the reachable place that is nearest to a point."""
         ...
 
@@ -215,7 +279,30 @@ class Engine(Protocol):
         ...
 
     def say(self, text: str) -> None:
-        """Deliver the agent's final answer through the body."""
+        """Deliver the agent's final answer."""
+        ...
+
+
+class World(Protocol):
+    """A room, the things in it, and its bodies: the whole truth, and the way back to any state."""
+
+    @property
+    def scene(self) -> SceneInfo:
+        """Name, origin, extent and areas of the loaded scene."""
+        ...
+
+    @property
+    def object_names(self) -> Mapping[int, str]:
+        """Class of every interactable object, by id; labelings make tags of it."""
+        ...
+
+    @property
+    def bodies(self) -> Mapping[str, Body]:
+        """Its bodies by name, the one that acts in an episode first."""
+        ...
+
+    def reset(self, seed: int) -> None:
+        """Put the world and its bodies back to their start. Same seed, same world."""
         ...
 
     def state(self) -> WorldState:
@@ -223,7 +310,7 @@ class Engine(Protocol):
         ...
 
     def snapshot(self) -> bytes:
-        """Everything that decides what happens next: world, body, what it holds."""
+        """Everything that decides what happens next: world, bodies, what they hold."""
         ...
 
     def restore(self, snapshot: bytes) -> None:
@@ -234,6 +321,31 @@ class Engine(Protocol):
         """
         ...
 
-    def close(self) -> None:
-        """Free graphics and memory; the engine cannot be used afterwards."""
+    def apply(self, event: WorldEvent) -> None:
+        """Let something happen that no body of this world does; everything is at rest afterwards.
+
+        Raises:
+            EngineError: This engine cannot do it, or not now; nothing changed.
+        """
         ...
+
+    def close(self) -> None:
+        """Free graphics and memory; the world cannot be used afterwards."""
+        ...
+
+
+def acting_body(world: World) -> Body:
+    """The body that acts in an episode: the first one.
+
+    Raises:
+        EngineError: The world has none, or is no `World` at all.
+    """
+    parts = ("scene", "object_names", "bodies", "reset", "state", "snapshot", "restore", "apply")
+    if lacking := [name for name in parts if not hasattr(world, name)]:
+        raise EngineError(
+            f"{type(world).__name__} is no engine: it lacks {', '.join(lacking)} "
+            "(see adamo_vh.engine.World)."
+        )
+    for body in world.bodies.values():
+        return body
+    raise EngineError(f"Scene {world.scene.name!r} has no body: an engine needs at least one.")

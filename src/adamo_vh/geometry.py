@@ -152,16 +152,33 @@ class Camera:
     width_px: int
     height_px: int
 
+    @classmethod
+    def towards(
+        cls,
+        eyes: Vec3,
+        point: Vec3,
+        fov_y_rad: float,
+        size_px: tuple[int, int],
+        yaw_rad: float = 0.0,
+    ) -> Camera:
+        """A camera at the eyes with a point in the middle of its picture.
+
+        Args:
+            eyes: Optical centre, metres.
+            point: What it is aimed at, metres.
+            fov_y_rad: Vertical field of view.
+            size_px: Width and height of the picture.
+            yaw_rad: Its heading where the point is straight above or below.
+        """
+        line = point - eyes
+        flat = math.hypot(line.x, line.y)
+        yaw = math.atan2(line.y, line.x) if flat > 1e-6 else yaw_rad
+        return cls(eyes, yaw, math.atan2(line.z, flat), fov_y_rad, *size_px)
+
     @property
     def focal_px(self) -> float:
         """Focal length in pixels (square pixels, principal point in the middle)."""
         return self.height_px / 2 / math.tan(self.fov_y_rad / 2)
-
-    @property
-    def intrinsics(self) -> Array:
-        """(3, 3) matrix K: pixels from camera coordinates (x right, y down, z forward)."""
-        f = self.focal_px
-        return np.array([[f, 0, self.width_px / 2], [0, f, self.height_px / 2], [0, 0, 1]])
 
     @property
     def world_from_camera(self) -> Array:

@@ -28,6 +28,8 @@ class BodyState:
     """Where the eyes are, metres."""
     held: int | None = None
     """Id of the object in the hand."""
+    held_box: Box | None = None
+    """The box of the object in the hand, which one feels also with the eyes elsewhere."""
 
 
 @dataclass(frozen=True, slots=True)

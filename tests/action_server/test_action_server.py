@@ -99,9 +99,9 @@ def test_one_object_in_the_hand(server: LocalActionServer) -> None:
 
 
 def test_what_was_not_seen_cannot_be_picked_and_reads_like_unknown(engine: BuiltinEngine) -> None:
-    engine.look_at(Vec3(-2.9, -1.0, 1.5))
+    engine.body.look(Vec3(-2.9, -1.0, 1.5))
     server = LocalActionServer(engine, resolution=SMALL)
-    assert server.observe().objects == ()
+    assert server.observe().observation.objects == ()
     unseen = server.execute(Pick("Plate_57")).feedback
     unknown = server.execute(Pick("Plate_58")).feedback
     assert (unseen.code, unknown.code) == (Code.NOT_SEEN, Code.UNKNOWN_TAG)
@@ -113,7 +113,7 @@ def test_what_was_not_seen_cannot_be_picked_and_reads_like_unknown(engine: Built
 def test_under_opaque_labels_no_class_is_told(engine: BuiltinEngine) -> None:
     config = PerceptionConfig(labeling=Labeling.OPAQ)
     server = LocalActionServer(engine, perception=config, resolution=SMALL)
-    view = server.observe()
+    view = server.observe().observation
     assert all(item.tag.isdigit() for item in view.objects)
     result = server.execute(Pick("57"))
     assert result.agent.held == "57"
@@ -129,10 +129,10 @@ class Wave:
 
 
 def wave(context: ToolContext, action: Wave) -> Feedback:
-    held = context.engine.body().held
+    held = context.body.state().held
     if held is not None:
         return Feedback(Outcome.REFUSED, "hand_full", f"Refused: {context.tag(held)} is in it.")
-    context.engine.say("(waves)" * action.times)
+    context.body.say("(waves)" * action.times)
     return Feedback(Outcome.DONE, "ok", f"Done: waved {action.times} times.")
 
 
@@ -142,6 +142,6 @@ def test_a_tool_from_outside_is_a_dataclass_and_a_function(engine: BuiltinEngine
     assert tool_schema(Wave).description == "Wave with the free hand."
     assert server.actions == (Look, Walk, Pick, Drop, Wave)
     assert server.execute(Wave(2)).feedback.text == "Done: waved 2 times."
-    assert engine.said == ("(waves)(waves)",)
+    assert engine.body.said == ["(waves)(waves)"]
     server.execute(Pick("Cup_45"))
     assert server.execute(Wave(1)).feedback.text == "Refused: Cup_45 is in it."

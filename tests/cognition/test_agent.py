@@ -68,7 +68,7 @@ def test_an_episode_runs_to_its_answer(engine: BuiltinEngine) -> None:
     ended, trajectory = run(engine, model)
     assert ended.reason is TerminationReason.ANSWERED
     assert (ended.answer, ended.steps) == ("I hold it.", 2)
-    assert engine.said == ("I hold it.",)
+    assert engine.body.said == ["I hold it."]
     assert engine.state().body.held == 57
     kinds = [event.type for event in trajectory.events]
     assert kinds == [
@@ -170,7 +170,7 @@ def test_a_provider_fault_breaks_the_episode_without_a_score(engine: BuiltinEngi
     assert ended.reason is TerminationReason.BROKEN
     assert not ended.reason.is_scored
     assert "503" in ended.answer
-    assert engine.said == ()
+    assert engine.body.said == []
     assert isinstance(trajectory.events[0], Started)
 
 

@@ -77,7 +77,7 @@ def shown(server: LocalActionServer, action: Action) -> Picture:
 def near_of(engine: BuiltinEngine, view: Percept, box: PixelBox) -> Percept:
     """What a close-up of a part of a view is made from."""
     aimed = aim(view.camera.position, seen_corners(view, box), CLOSEUP_PX)
-    return engine.closeup(aimed.point, aimed.fov_y_rad, aimed.width_px, aimed.height_px)
+    return engine.body.closeup(aimed.point, aimed.fov_y_rad, aimed.width_px, aimed.height_px)
 
 
 def mask_of(percept: Percept, object_id: int) -> NDArray[np.bool_]:
@@ -118,7 +118,7 @@ def test_every_object_of_the_tabletop_can_be_inspected(
     engine: BuiltinEngine, labeling: Labeling
 ) -> None:
     server = serve(engine, labeling=labeling)
-    assert len(server.observe().objects) == 19
+    assert len(server.observe().observation.objects) == 19
     for object_id in engine.object_names:
         check_inspected(server, engine, object_id)
 
@@ -149,13 +149,13 @@ def test_objects_of_the_living_room_can_be_inspected_from_several_places(
 def test_showing_changes_nothing(engine: BuiltinEngine) -> None:
     server = serve(engine, SMALL)
     server.observe()
-    before, body = server.save(), engine.body()
+    before, body = server.save(), engine.body.state()
     hashed = server.state_hash()
     for action in (Inspect("Key_34"), Survey(), Inspect("Plate_57"), Inspect("Unicorn_1")):
         result = server.execute(action)
         assert result.state_hash == hashed
-        assert (server.save(), engine.body()) == (before, body)
-    assert server.observe().frame == serve(engine, SMALL).observe().frame
+        assert (server.save(), engine.body.state()) == (before, body)
+    assert server.observe().observation.frame == serve(engine, SMALL).observe().observation.frame
 
 
 def test_what_is_not_in_view_is_not_shown(engine: BuiltinEngine) -> None:
@@ -169,16 +169,16 @@ def test_what_is_not_in_view_is_not_shown(engine: BuiltinEngine) -> None:
 
 
 def test_unseen_and_unknown_tags_read_the_same_as_for_pick(engine: BuiltinEngine) -> None:
-    engine.look_at(Vec3(-2.9, -1.0, 1.5))
+    engine.body.look(Vec3(-2.9, -1.0, 1.5))
     server = serve(engine, SMALL)
-    assert server.observe().objects == ()
+    assert server.observe().observation.objects == ()
     for tag, code in (("Plate_57", Code.NOT_SEEN), ("Plate_58", Code.UNKNOWN_TAG)):
         refused = server.execute(Inspect(tag))
         assert refused.feedback == server.execute(Pick(tag)).feedback
         assert refused.feedback.code == code
         assert refused.pictures == ()
     # In view, but not yet in a view that the agent was shown.
-    engine.look_at(Vec3(0.0, -1.0, 0.8))
+    engine.body.look(Vec3(0.0, -1.0, 0.8))
     assert server.execute(Inspect("Plate_57")).feedback.code == Code.NOT_SEEN
 
 
@@ -191,7 +191,7 @@ def test_what_is_in_the_hand_can_always_be_inspected(engine: BuiltinEngine, obje
     for look_down in (False, True):
         hand = engine.state().object(object_id).box.center
         point = Vec3(hand.x, hand.y, hand.z) if look_down else Vec3(-1.0, 2.9, 1.7)
-        engine.look_at(point)
+        engine.body.look(point)
         in_view = object_id in {i.id for i in visible_objects(engine.capture(*FULL), 20)}
         assert in_view == look_down
         picture = shown(server, Inspect(tag))[STRIP_PX:]
@@ -208,7 +208,7 @@ def test_what_is_in_the_hand_can_always_be_inspected(engine: BuiltinEngine, obje
 def cut_by_the_edge(engine: BuiltinEngine) -> tuple[Percept, int, PixelBox]:
     """Look so that the edge of the view cuts an object."""
     for y in np.arange(0.0, 2.5, 0.02):
-        engine.look_at(Vec3(-0.2, float(y), 0.9))
+        engine.body.look(Vec3(-0.2, float(y), 0.9))
         view = engine.capture(*FULL)
         for item in visible_objects(view, 20):
             left, top, right, bottom = item.box_px
@@ -272,7 +272,7 @@ def test_a_closeup_is_from_the_same_eyes(engine: BuiltinEngine) -> None:
 
 def test_a_survey_shows_exactly_what_is_listed_in_its_order(engine: BuiltinEngine) -> None:
     server = serve(engine)
-    tags = [item.tag for item in server.observe().objects]
+    tags = [item.tag for item in server.observe().observation.objects]
     result = server.execute(Survey())
     assert result.feedback.text == f"Done: sheet, row by row: {', '.join(tags)}."
     (frame,) = result.pictures
@@ -296,7 +296,7 @@ def test_few_objects_make_a_small_sheet(engine: BuiltinEngine, count: int, colum
     view = engine.capture(*FULL)
     found = visible_objects(view, 20)[:count]
     items = [(item.id, f"{item.id}", item.box_px) for item in found]
-    sheet = contact_sheet(view, items, engine.closeup)
+    sheet = contact_sheet(view, items, engine.body.closeup)
     cell = (sheet.width - 8) // columns - 8
     assert 300 <= cell <= 320
     assert sheet.width <= SHEET_PX
@@ -304,7 +304,7 @@ def test_few_objects_make_a_small_sheet(engine: BuiltinEngine, count: int, colum
 
 
 def test_a_survey_of_nothing_is_refused(engine: BuiltinEngine) -> None:
-    engine.look_at(Vec3(-2.9, -1.0, 1.5))
+    engine.body.look(Vec3(-2.9, -1.0, 1.5))
     result = serve(engine, SMALL).execute(Survey())
     assert (result.feedback.outcome, result.feedback.code) == (Outcome.REFUSED, Code.NOT_IN_VIEW)
     assert result.feedback.text == "Refused: no object is in view now; look round first."
@@ -339,7 +339,7 @@ def test_small_views_give_large_closeups(
     engine: BuiltinEngine, resolution: tuple[int, int]
 ) -> None:
     server = serve(engine, resolution)
-    listed = server.observe().objects
+    listed = server.observe().observation.objects
     assert len(listed) >= 15
     for item in listed:
         picture = shown(server, Inspect(item.tag))[STRIP_PX:]
@@ -359,13 +359,13 @@ def points_of(engine: BuiltinEngine, config: PerceptionConfig) -> list[Vec3]:
     """Reference points of views all round from three places; no number is left out."""
     found: list[Vec3] = []
     for stand in ((-2.0, -1.0), (2.2, -4.2), (1.7, 1.4)):
-        engine.walk_to(Vec3(*stand, 0.0))
+        engine.body.walk(Vec3(*stand, 0.0))
         server = LocalActionServer(engine, perception=config, resolution=SMALL)
         for turn in range(6):
-            at, yaw = engine.body().position, turn * math.pi / 3
+            at, yaw = engine.body.state().position, turn * math.pi / 3
             ahead = Vec3(at.x + 2 * math.cos(yaw), at.y + 2 * math.sin(yaw), 1.6 - turn % 3)
-            engine.look_at(ahead)
-            points = server.observe().points
+            engine.body.look(ahead)
+            points = server.observe().observation.points
             assert [point.tag for point in points] == [f"P{i}" for i in range(len(points))]
             found += [point.position for point in points]
     return found

@@ -54,8 +54,8 @@ def test_the_furniture_is_outlined_from_above(engine: BuiltinEngine) -> None:
 def test_what_rests_goes_on_resting(engine: BuiltinEngine) -> None:
     before = engine.state()
     for target in (CUP, KEY, PLATE):
-        engine.pick(target)
-        engine.drop(Vec3(-1.6, -2.0, 0.0))
+        engine.body.pick(target)
+        engine.body.drop(Vec3(-1.6, -2.0, 0.0))
     after = engine.state()
     for item in before.objects:
         if item.id not in (CUP, KEY, PLATE):
@@ -85,11 +85,11 @@ def test_ids_agree_with_the_geometry(engine: BuiltinEngine) -> None:
 
 
 def test_what_stands_behind_the_glass_is_in_the_second_layer(engine: BuiltinEngine) -> None:
-    engine.pick(KEY)
+    engine.body.pick(KEY)
     glass = place(engine.state(), GLASS)
-    engine.drop(Vec3(glass.x + 0.075, glass.y, 0.78))
-    engine.walk_to(Vec3(-0.85, glass.y, 0))
-    engine.look_at(glass)
+    engine.body.drop(Vec3(glass.x + 0.075, glass.y, 0.78))
+    engine.body.walk(Vec3(-0.85, glass.y, 0))
+    engine.body.look(glass)
     front, behind = engine.capture(1920, 1080).id_layers
     assert (front == GLASS).any()
     assert not (behind == GLASS).any()
@@ -97,21 +97,21 @@ def test_what_stands_behind_the_glass_is_in_the_second_layer(engine: BuiltinEngi
 
 
 def test_picking_walks_within_reach_and_holds(engine: BuiltinEngine) -> None:
-    report = engine.pick(PLATE)
+    report = engine.body.pick(PLATE)
     state = engine.state()
     assert (report.outcome, report.code) == (Outcome.DONE, Code.REPOSITIONED)
     assert report.point is not None
-    assert engine.body().position.horizontal_distance(report.point) <= REACH_M
+    assert engine.body.state().position.horizontal_distance(report.point) <= REACH_M
     held = state.object(PLATE)
     assert held.held
     assert held.support is None
     assert state.body.held == PLATE
-    assert engine.pick(GLASS).code == Code.HAND_FULL
+    assert engine.body.pick(GLASS).code == Code.HAND_FULL
 
 
 def test_the_held_object_goes_with_the_body(engine: BuiltinEngine) -> None:
-    engine.pick(CUP)
-    engine.walk_to(Vec3(2.0, 2.0, 0.0))
+    engine.body.pick(CUP)
+    engine.body.walk(Vec3(2.0, 2.0, 0.0))
     state = engine.state()
     assert place(state, CUP).horizontal_distance(state.body.position) < 0.6
     assert 0.8 < place(state, CUP).z < 1.3
@@ -129,17 +129,17 @@ AT_THE_WALL = [
 @pytest.mark.parametrize("object_id", [PLATE, BOTTLE, 50])
 def test_what_is_held_is_never_in_a_wall(engine: BuiltinEngine, object_id: int) -> None:
     sound, room = Soundness(engine.world), engine.scene
-    engine.pick(object_id)
+    engine.body.pick(object_id)
     for place_to_stand, gaze in AT_THE_WALL:
-        assert engine.walk_to(place_to_stand).outcome is Outcome.DONE
-        engine.look_at(gaze)
+        assert engine.body.walk(place_to_stand).outcome is Outcome.DONE
+        engine.body.look(gaze)
         state = engine.state()
         corners = state.object(object_id).box.corners()
         assert (corners[:, :2] > [room.x_min, room.y_min]).all()
         assert (corners[:, :2] < [room.x_max, room.y_max]).all()
         assert sound.state_faults(state) == []
         # The hand went along, and the thing is still before the body.
-        hand = engine.stage.shown(engine.figure).hand
+        hand = engine.stage.shown(engine.body.stance).hand
         assert hand.distance(place(state, object_id)) < 1e-6
         assert place(state, object_id).horizontal_distance(state.body.position) > 0.1
         # It is a state like any other.
@@ -150,26 +150,26 @@ def test_what_is_held_is_never_in_a_wall(engine: BuiltinEngine, object_id: int) 
 
 def test_away_from_walls_things_are_held_at_arms_length(engine: BuiltinEngine) -> None:
     """Drawn in at a wall, and out again as soon as there is room."""
-    engine.pick(PLATE)
-    engine.walk_to(Vec3(-2.0, -3.0, 0.0))
-    engine.look_at(Vec3(0.0, -3.0, 1.0))
+    engine.body.pick(PLATE)
+    engine.body.walk(Vec3(-2.0, -3.0, 0.0))
+    engine.body.look(Vec3(0.0, -3.0, 1.0))
     before = engine.state()
-    engine.walk_to(Vec3(-2.75, -3.0, 0.0))
-    engine.look_at(Vec3(-3.0, -3.0, 1.0))
+    engine.body.walk(Vec3(-2.75, -3.0, 0.0))
+    engine.body.look(Vec3(-3.0, -3.0, 1.0))
     near = engine.state()
     assert place(near, PLATE).horizontal_distance(near.body.position) < 0.3
-    engine.walk_to(Vec3(-2.0, -3.0, 0.0))
-    engine.look_at(Vec3(0.0, -3.0, 1.0))
+    engine.body.walk(Vec3(-2.0, -3.0, 0.0))
+    engine.body.look(Vec3(0.0, -3.0, 1.0))
     assert engine.state().hash() == before.hash()
     assert place(before, PLATE).horizontal_distance(before.body.position) > 0.35
 
 
 def test_a_watched_carrier_pushes_nothing_through_the_wall(engine: BuiltinEngine) -> None:
-    engine.pick(PLATE)
+    engine.body.pick(PLATE)
     lowest: list[float] = []
 
     def watch(_: float) -> bool:
-        shown = engine.stage.shown(engine.figure)
+        shown = engine.stage.shown(engine.body.stance)
         box = engine.world.box(PLATE)
         assert shown.hand.distance(box.center) < 1e-6
         lowest.append(float(box.corners()[:, 0].min()))
@@ -177,8 +177,8 @@ def test_a_watched_carrier_pushes_nothing_through_the_wall(engine: BuiltinEngine
 
     engine.stage.watcher = watch
     try:
-        engine.walk_to(Vec3(-2.75, -2.0, 0.0))
-        engine.look_at(Vec3(-3.0, -2.0, 1.0))
+        engine.body.walk(Vec3(-2.75, -2.0, 0.0))
+        engine.body.look(Vec3(-3.0, -2.0, 1.0))
     finally:
         engine.stage.watcher = None
     assert len(lowest) > 20
@@ -186,8 +186,8 @@ def test_a_watched_carrier_pushes_nothing_through_the_wall(engine: BuiltinEngine
 
 
 def test_the_rules_tell_a_held_thing_in_a_wall(engine: BuiltinEngine) -> None:
-    engine.pick(PLATE)
-    engine.walk_to(Vec3(-2.75, -1.0, 0.0))
+    engine.body.pick(PLATE)
+    engine.body.walk(Vec3(-2.75, -1.0, 0.0))
     sound = Soundness(engine.world)
     assert sound.state_faults(engine.state()) == []
     physics.place(engine.world, PLATE, Vec3(-3.05, -1.0, 1.05))
@@ -195,8 +195,8 @@ def test_the_rules_tell_a_held_thing_in_a_wall(engine: BuiltinEngine) -> None:
 
 
 def test_a_free_point_on_the_floor_takes_the_object(engine: BuiltinEngine) -> None:
-    engine.pick(PLATE)
-    report = engine.drop(Vec3(-1.6, -2.4, 0.0))
+    engine.body.pick(PLATE)
+    report = engine.body.drop(Vec3(-1.6, -2.4, 0.0))
     item = engine.state().object(PLATE)
     assert report.outcome is Outcome.DONE
     assert report.support == item.support == FLOOR
@@ -206,9 +206,9 @@ def test_a_free_point_on_the_floor_takes_the_object(engine: BuiltinEngine) -> No
 
 
 def test_a_point_on_another_object_is_corrected(engine: BuiltinEngine) -> None:
-    engine.pick(GLASS)
+    engine.body.pick(GLASS)
     plate = place(engine.state(), PLATE)
-    report = engine.drop(plate)
+    report = engine.body.drop(plate)
     item = engine.state().object(GLASS)
     assert (report.outcome, report.code) == (Outcome.CORRECTED, Code.PLACED_ELSEWHERE)
     assert item.support == "table"
@@ -216,8 +216,8 @@ def test_a_point_on_another_object_is_corrected(engine: BuiltinEngine) -> None:
 
 
 def test_a_point_in_the_air_above_the_table_lands_on_it(engine: BuiltinEngine) -> None:
-    engine.pick(CUP)
-    report = engine.drop(Vec3(-0.42, -0.35, 1.1))
+    engine.body.pick(CUP)
+    report = engine.body.drop(Vec3(-0.42, -0.35, 1.1))
     assert report.outcome is Outcome.CORRECTED
     assert engine.state().object(CUP).support == "table"
 
@@ -225,31 +225,31 @@ def test_a_point_in_the_air_above_the_table_lands_on_it(engine: BuiltinEngine) -
 def test_a_point_far_from_any_surface_is_refused_and_nothing_changes(
     engine: BuiltinEngine,
 ) -> None:
-    engine.pick(CUP)
+    engine.body.pick(CUP)
     before = engine.state().hash()
-    report = engine.drop(Vec3(1.5, 1.5, 1.6))
+    report = engine.body.drop(Vec3(1.5, 1.5, 1.6))
     assert (report.outcome, report.code) == (Outcome.REFUSED, Code.NO_FREE_SPOT)
     assert engine.state().hash() == before
 
 
 def test_dropping_with_an_empty_hand_is_refused(engine: BuiltinEngine) -> None:
-    assert engine.drop(Vec3(0, 0, 0)).code == Code.HAND_EMPTY
+    assert engine.body.drop(Vec3(0, 0, 0)).code == Code.HAND_EMPTY
 
 
 def test_the_body_never_stands_on_what_it_drops(engine: BuiltinEngine) -> None:
-    engine.pick(PLATE)
-    here = engine.body().position
-    engine.drop(here)
+    engine.body.pick(PLATE)
+    here = engine.body.state().position
+    engine.body.drop(here)
     plate = place(engine.state(), PLATE)
     assert plate.horizontal_distance(here) < 0.05
-    assert engine.body().position.horizontal_distance(plate) > BODY_RADIUS_M + 0.125
+    assert engine.body.state().position.horizontal_distance(plate) > BODY_RADIUS_M + 0.125
 
 
 def test_walking_around_and_into_the_table(engine: BuiltinEngine) -> None:
-    over = engine.walk_to(Vec3(2.0, -1.0, 0.0))
+    over = engine.body.walk(Vec3(2.0, -1.0, 0.0))
     assert over.outcome is Outcome.DONE
     assert over.walked_m > 4.0
-    into = engine.walk_to(Vec3(-0.05, -1.0, 0.0))
+    into = engine.body.walk(Vec3(-0.05, -1.0, 0.0))
     assert (into.outcome, into.code) == (Outcome.CORRECTED, Code.STOPPED_SHORT)
     assert into.point is not None
     assert into.point.x > 0.475 + BODY_RADIUS_M - 0.01
@@ -257,24 +257,24 @@ def test_walking_around_and_into_the_table(engine: BuiltinEngine) -> None:
 
 
 def test_looking_straight_down_is_corrected(engine: BuiltinEngine) -> None:
-    here = engine.body().position
-    assert engine.look_at(Vec3(here.x, here.y, 0.0)).code == Code.GAZE_LIMITED
-    assert engine.look_at(Vec3(here.x, here.y + 1.0, 0.0)).outcome is Outcome.DONE
+    here = engine.body.state().position
+    assert engine.body.look(Vec3(here.x, here.y, 0.0)).code == Code.GAZE_LIMITED
+    assert engine.body.look(Vec3(here.x, here.y + 1.0, 0.0)).outcome is Outcome.DONE
 
 
 def test_the_looked_at_point_is_in_the_middle_of_the_view(engine: BuiltinEngine) -> None:
     target = Vec3(0.326, -0.603, 0.8)
-    engine.look_at(target)
+    engine.body.look(target)
     camera = engine.capture(*SMALL).camera
     assert camera.project(target.array()[None])[0, :2] == pytest.approx((240, 135), abs=1)
 
 
 def test_rays_pass_through_the_held_object(engine: BuiltinEngine) -> None:
-    engine.pick(PLATE)
+    engine.body.pick(PLATE)
     hand = place(engine.state(), PLATE)
-    eyes = engine.body().eyes
+    eyes = engine.body.state().eyes
     direction = (hand - eyes).array()[None] / (hand - eyes).norm()
-    [hit] = engine.raycast(eyes, direction)
+    [hit] = engine.body.rays(eyes, direction)
     assert hit is not None
     assert hit.distance(eyes) > hand.distance(eyes) + 0.1
 
@@ -283,18 +283,18 @@ def test_rays_hit_what_the_picture_shows(engine: BuiltinEngine) -> None:
     camera = engine.capture(*SMALL).camera
     table_point = np.array([[-0.5, -1.0, 0.78]])
     pixel = camera.project(table_point)[:, :2]
-    [hit] = engine.raycast(camera.position, camera.rays(pixel))
+    [hit] = engine.body.rays(camera.position, camera.rays(pixel))
     assert hit is not None
     assert hit.array() == pytest.approx(table_point[0], abs=0.01)
 
 
 def _play(engine: BuiltinEngine) -> tuple[str, bytes]:
     engine.reset(3)
-    engine.pick(PLATE)
-    engine.drop(Vec3(-1.6, -2.4, 0.0))
-    engine.look_at(Vec3(0, -1, 0.8))
-    engine.pick(BOTTLE)
-    engine.drop(Vec3(-0.3, -0.6, 0.78))
+    engine.body.pick(PLATE)
+    engine.body.drop(Vec3(-1.6, -2.4, 0.0))
+    engine.body.look(Vec3(0, -1, 0.8))
+    engine.body.pick(BOTTLE)
+    engine.body.drop(Vec3(-0.3, -0.6, 0.78))
     return engine.state().hash(), engine.capture(*SMALL).rgb.tobytes()
 
 
@@ -319,30 +319,30 @@ def test_another_process_gives_the_same_states_and_frames(engine: BuiltinEngine)
 
 def test_another_action_gives_another_hash(engine: BuiltinEngine) -> None:
     start = engine.state().hash()
-    engine.look_at(Vec3(1, 1, 1))
+    engine.body.look(Vec3(1, 1, 1))
     assert engine.state().hash() != start
     engine.reset(0)
     assert engine.state().hash() == start
 
 
 def test_what_is_said_is_delivered(engine: BuiltinEngine) -> None:
-    engine.say("Done.")
-    assert list(engine.said) == ["Done."]
+    engine.body.say("Done.")
+    assert list(engine.body.said) == ["Done."]
     engine.reset(0)
-    assert list(engine.said) == []
+    assert list(engine.body.said) == []
 
 
 def test_a_snapshot_goes_on_the_same_way(engine: BuiltinEngine) -> None:
-    engine.pick(PLATE)
+    engine.body.pick(PLATE)
     kept = engine.snapshot()
     at = engine.state()
-    engine.drop(Vec3(-1.6, -2.4, 0.0))
-    engine.pick(BOTTLE)
+    engine.body.drop(Vec3(-1.6, -2.4, 0.0))
+    engine.body.pick(BOTTLE)
     end = engine.state().hash()
     engine.restore(kept)
     assert engine.state() == at
-    engine.drop(Vec3(-1.6, -2.4, 0.0))
-    engine.pick(BOTTLE)
+    engine.body.drop(Vec3(-1.6, -2.4, 0.0))
+    engine.body.pick(BOTTLE)
     assert engine.state().hash() == end
 
 

@@ -23,10 +23,10 @@ def play(engine: BuiltinEngine) -> list[tuple[BodyReport, str]]:
     engine.reset(0)
     story = []
     for act in (
-        lambda: engine.look_at(Vec3(0, -1, 0.8)),
-        lambda: engine.pick(PLATE),
-        lambda: engine.walk_to(Vec3(1.5, 1.5, 0)),
-        lambda: engine.drop(FLOOR),
+        lambda: engine.body.look(Vec3(0, -1, 0.8)),
+        lambda: engine.body.pick(PLATE),
+        lambda: engine.body.walk(Vec3(1.5, 1.5, 0)),
+        lambda: engine.body.drop(FLOOR),
     ):
         report = act()
         story.append((report, engine.snapshot().hex()))
@@ -48,7 +48,7 @@ def test_the_moments_are_in_order_and_continuous(engine: BuiltinEngine) -> None:
     hands: list[Vec3] = []
 
     def watch(seconds: float) -> bool:
-        shown = engine.stage.shown(engine.figure)
+        shown = engine.stage.shown(engine.body.stance)
         times.append(seconds)
         places.append(shown.body.position)
         hands.append(shown.hand)
@@ -56,7 +56,7 @@ def test_the_moments_are_in_order_and_continuous(engine: BuiltinEngine) -> None:
 
     engine.stage.watcher = watch
     try:
-        engine.walk_to(Vec3(2.0, -1.0, 0.0))
+        engine.body.walk(Vec3(2.0, -1.0, 0.0))
     finally:
         engine.stage.watcher = None
     assert times == sorted(times)
@@ -64,21 +64,21 @@ def test_the_moments_are_in_order_and_continuous(engine: BuiltinEngine) -> None:
     steps = [a.distance(b) for a, b in itertools.pairwise(places)]
     assert max(steps) < 0.15
     assert max(a.distance(b) for a, b in itertools.pairwise(hands)) < 0.25
-    assert places[-1] == engine.body().position
+    assert places[-1] == engine.body.state().position
 
 
 def test_a_thing_is_in_the_hand_from_the_grasp_on(engine: BuiltinEngine) -> None:
     gaps: list[float] = []
 
     def watch(_: float) -> bool:
-        shown = engine.stage.shown(engine.figure)
+        shown = engine.stage.shown(engine.body.stance)
         if shown.body.held == CUP:
             gaps.append(shown.hand.distance(engine._world.box(CUP).center))
         return True
 
     engine.stage.watcher = watch
     try:
-        engine.pick(CUP)
+        engine.body.pick(CUP)
     finally:
         engine.stage.watcher = None
     assert gaps
@@ -89,14 +89,14 @@ def test_a_thing_is_in_the_hand_from_the_grasp_on(engine: BuiltinEngine) -> None
 def test_a_walk_can_be_stopped_anywhere(engine: BuiltinEngine, moment: float) -> None:
     engine.stage.watcher = lambda seconds: seconds < moment
     try:
-        report = engine.walk_to(Vec3(2.0, -1.0, 0.0))
+        report = engine.body.walk(Vec3(2.0, -1.0, 0.0))
     finally:
         engine.stage.watcher = None
     assert (report.outcome, report.code) == (Outcome.CORRECTED, Code.CANCELLED)
-    here = engine.body().position
+    here = engine.body.state().position
     assert report.point == here
     assert here.horizontal_distance(Vec3(2.0, -1.0, 0)) > 1.0
-    assert engine.walk_to(Vec3(2.0, -1.0, 0.0)).outcome is Outcome.DONE
+    assert engine.body.walk(Vec3(2.0, -1.0, 0.0)).outcome is Outcome.DONE
 
 
 def test_a_pick_that_is_stopped_leaves_the_thing_or_holds_it(engine: BuiltinEngine) -> None:
@@ -104,12 +104,12 @@ def test_a_pick_that_is_stopped_leaves_the_thing_or_holds_it(engine: BuiltinEngi
     seen = set()
     for moment in np.arange(0.0, 6.0, 0.4):
         engine.reset(0)
-        engine.walk_to(Vec3(-0.9, -0.4, 0.0))
+        engine.body.walk(Vec3(-0.9, -0.4, 0.0))
         engine.stage.watcher = lambda seconds, stop=moment: seconds < stop
-        engine.pick(CUP)
+        engine.body.pick(CUP)
         engine.stage.watcher = None
         cup = engine.state().object(CUP)
-        assert cup.held == (engine.body().held == CUP)
+        assert cup.held == (engine.body.state().held == CUP)
         assert cup.held or cup.support == "table"
         seen.add(cup.held)
     assert seen == {True, False}
@@ -119,7 +119,7 @@ def test_the_figure_is_seen_from_outside_but_does_not_hide_the_view(
     engine: BuiltinEngine,
 ) -> None:
     own = engine.capture(640, 360)
-    engine.walk_to(Vec3(1.6, -1.0, 0.0))
+    engine.body.walk(Vec3(1.6, -1.0, 0.0))
     outside = engine.view(own.camera)
     assert np.abs(outside.rgb.astype(int) - own.rgb.astype(int)).max(axis=2).mean() > 0.5
     assert len(own.objects) == 19
@@ -130,7 +130,7 @@ def test_a_film_can_be_played(engine: BuiltinEngine, tmp_path: Path) -> None:
 
     recorder = VideoRecorder(tmp_path / "film.webm", engine)
     try:
-        engine.look_at(Vec3(0.5, -1.2, 1.0))
+        engine.body.look(Vec3(0.5, -1.2, 1.0))
     finally:
         recorder.close()
     assert engine.stage.watcher is None

@@ -137,7 +137,7 @@ class WorldMachine(RuleBasedStateMachine):
     def observe(self) -> None:
         """Frame, list and text tell the same, and nothing that is not visible."""
         before = self.engine.state().hash()
-        observation, percept = self.server.observe(), self.engine.capture(*RESOLUTION)
+        observation, percept = self.server.observe().observation, self.engine.capture(*RESOLUTION)
         state = self.engine.state()
         assert state.hash() == before
         ids = {self.server.tag(i): i for i in self.engine.object_names}

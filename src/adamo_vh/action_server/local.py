@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, ClassVar
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from adamo_vh.action import Action, Code, Feedback, Outcome, action_name
-from adamo_vh.action_server.protocol import ActionResult
+from adamo_vh.action_server.protocol import ActionResult, Sighting
 from adamo_vh.action_server.tools import PAPER_TOOLS, Tool
-from adamo_vh.engine import Engine
+from adamo_vh.engine import Body, SceneInfo, World, acting_body
 from adamo_vh.errors import EngineError, InvalidActionError
 from adamo_vh.geometry import Vec3
 from adamo_vh.observation import AgentState, Frame, Observation, Percept
@@ -34,11 +34,11 @@ PAPER_REFRESH = frozenset({"Look"})
 
 
 class LocalActionServer:
-    """Executes actions on an engine. Implements `ActionServer` and `ToolContext`."""
+    """Executes actions in a world. Implements `ActionServer` and `ToolContext`."""
 
     def __init__(
         self,
-        engine: Engine,
+        world: World,
         *,
         perception: PerceptionConfig | None = None,
         resolution: tuple[int, int] = (1920, 1080),
@@ -48,18 +48,19 @@ class LocalActionServer:
         """Serve one episode.
 
         Args:
-            engine: The world, already reset.
+            world: Already reset; its acting body carries the actions out.
             perception: Labeling, grid and picture settings.
             resolution: Width and height of the frames in pixels.
             tools: The primitives on offer.
             refresh_after: Names of the actions that are followed by a new view.
         """
-        self.engine = engine
+        self._world = world
+        self._body = acting_body(world)
         self._perception = perception or PerceptionConfig()
         self._resolution = resolution
         self._tools = {tool.action_type: tool for tool in tools}
         self._refresh_after = refresh_after
-        self._names = engine.object_names
+        self._names = world.object_names
         self._seen: set[int] = set()
         self._shown: list[Frame] = []
 
@@ -67,6 +68,16 @@ class LocalActionServer:
     def actions(self) -> tuple[type, ...]:
         """The action types on offer."""
         return tuple(self._tools)
+
+    @property
+    def body(self) -> Body:
+        """What acts and senses."""
+        return self._body
+
+    @property
+    def scene(self) -> SceneInfo:
+        """The room's public facts."""
+        return self._world.scene
 
     @property
     def seen(self) -> frozenset[int]:
@@ -91,10 +102,13 @@ class LocalActionServer:
             raise InvalidActionError(code, f"no object tagged {tag!r} was seen so far.")
         return object_id
 
-    def observe(self) -> Observation:
+    def observe(self) -> Sighting:
         """The view from where the body stands now; what it lists counts as seen."""
-        percept = self.engine.capture(*self._resolution)
-        raycast = only(self._is_anchor, self.engine.raycast)
+        return Sighting(self._view(), self.state_hash(), self.save())
+
+    def _view(self) -> Observation:
+        percept = self._body.see(*self._resolution)
+        raycast = only(self._is_anchor, self._body.rays)
         observation = perceive(percept, raycast, self._perception, self._names)
         for item in observation.objects:
             object_id = self._perception.labeling.resolve(item.tag, self._names)
@@ -106,7 +120,7 @@ class LocalActionServer:
         """Whether a place can be a reference point: in the room, not behind its window."""
         margin_m = _WALL_M if self._perception.points_on_walls else -_WALL_M
         below = point.z <= self._perception.points_below_m
-        return below and self.engine.scene.is_within_walls(point, margin_m)
+        return below and self.scene.is_within_walls(point, margin_m)
 
     def show_closeup(self, object_id: int) -> bool:
         """Show an object close up with the next result.
@@ -116,14 +130,15 @@ class LocalActionServer:
         """
         view, listed = self._in_view()
         boxes = {item.id: item.box_px for item in listed}
-        if view.body.held == object_id:
+        felt = view.body.held_box
+        if view.body.held == object_id and felt is not None:
             # One can always look at one's own hand, and feels how large the thing in it is.
-            points = self.engine.state().object(object_id).box.corners()
+            points = felt.corners()
         elif object_id in boxes:
             points = seen_corners(view, boxes[object_id])
         else:
             return False
-        self._show(closeup_of(view, object_id, self.tag(object_id), points, self.engine.closeup))
+        self._show(closeup_of(view, object_id, self.tag(object_id), points, self._body.closeup))
         return True
 
     def show_sheet(self) -> tuple[str, ...]:
@@ -131,12 +146,12 @@ class LocalActionServer:
         view, listed = self._in_view()
         items = [(item.id, self.tag(item.id), item.box_px) for item in listed[:MAX_CELLS]]
         if items:
-            self._show(contact_sheet(view, items, self.engine.closeup))
+            self._show(contact_sheet(view, items, self._body.closeup))
         return tuple(tag for _, tag, _ in items)
 
     def _in_view(self) -> tuple[Percept, Sequence[VisibleObject]]:
         """What the eyes see now, and what of it is large enough to be listed."""
-        percept = self.engine.capture(*self._resolution)
+        percept = self._body.see(*self._resolution)
         return percept, visible_objects(percept, self._perception.min_pixels)
 
     def _show(self, picture: Image) -> None:
@@ -150,31 +165,38 @@ class LocalActionServer:
             feedback = self._tools[type(action)].execute(self, action)
         except InvalidActionError as error:
             feedback = Feedback.of_error(error)
-        view = None
-        if feedback.outcome is not Outcome.REFUSED:
-            view = self.observe() if action_name(type(action)) in self._refresh_after else None
+        grants = action_name(type(action)) in self._refresh_after
+        view = self._view() if grants and feedback.outcome is not Outcome.REFUSED else None
+        return self._result(feedback, view)
+
+    def refuse(self, error: InvalidActionError) -> ActionResult:
+        """Answer a call that is no valid action: nothing changes."""
+        self._shown = []
+        return self._result(Feedback.of_error(error), None)
+
+    def _result(self, feedback: Feedback, view: Observation | None) -> ActionResult:
         hashed, saved = self.state_hash(), self.save()
         return ActionResult(feedback, self.agent(), view, hashed, saved, tuple(self._shown))
 
     def agent(self) -> AgentState:
         """The body now, in the agent's words."""
-        return agent_state(self.engine.body(), self._perception.labeling, self._names)
+        return agent_state(self._body.state(), self._perception.labeling, self._names)
 
     def say(self, text: str) -> None:
         """Deliver the final answer through the body."""
-        self.engine.say(text)
+        self._body.say(text)
 
     def state_hash(self) -> str:
         """Digest of the world now."""
-        return self.engine.state().hash()
+        return self._world.state().hash()
 
     def save(self) -> str:
         """World, body and what was seen so far, as text."""
-        saved = _Saved(self.engine.snapshot(), tuple(sorted(self._seen)))
+        saved = _Saved(self._world.snapshot(), tuple(sorted(self._seen)))
         return _codec().dump_json(saved).decode()
 
-    def load(self, saved: str) -> None:
-        """Go back to what `save` gave.
+    def load(self, saved: str) -> str:
+        """Go back to what `save` gave; the digest of the world then.
 
         Raises:
             EngineError: The text is damaged or belongs to another scene.
@@ -183,8 +205,9 @@ class LocalActionServer:
             kept = _codec().validate_json(saved)
         except ValidationError as error:
             raise EngineError(f"The saved state is damaged: {error.errors()[0]['msg']}") from None
-        self.engine.restore(kept.engine)
+        self._world.restore(kept.engine)
         self._seen = set(kept.seen)
+        return self.state_hash()
 
 
 @dataclass(frozen=True, slots=True)

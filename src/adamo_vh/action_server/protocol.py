@@ -1,4 +1,7 @@
-"""What the mind needs from a body: tools, views, and truthful feedback."""
+"""What the mind needs from a body: tools, views, and truthful feedback.
+
+Every call is answered whole, so that an action takes one round trip wherever the body is.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,24 @@ from adamo_vh.observation import AgentState, Frame, Observation
 
 
 @dataclass(frozen=True, slots=True)
+class Sighting:
+    """What a look at the room brought."""
+
+    observation: Observation
+    """The view, with the body as it is now."""
+    state_hash: str
+    """Digest of the world now; reveals nothing, proves replays."""
+    saved: str
+    """Handle to the saved state, for `ActionServer.load`: the state itself where body and mind are
+    in one process, else a name under which the server keeps it."""
+
+    @property
+    def agent(self) -> AgentState:
+        """The body now."""
+        return self.observation.agent
+
+
+@dataclass(frozen=True, slots=True)
 class ActionResult:
     """What an action brought."""
 
@@ -21,9 +42,9 @@ class ActionResult:
     observation: Observation | None
     """A new view, if the refresh rule grants one for this action."""
     state_hash: str
-    """Digest of the world after the action; reveals nothing, proves replays."""
+    """Digest of the world after the action; see `Sighting`."""
     saved: str
-    """What `ActionServer.save` gives after the action."""
+    """Handle to the saved state after the action; see `Sighting`."""
     pictures: tuple[Frame, ...] = ()
     """What the action itself showed, e.g. a close-up; not the view of the eyes."""
 
@@ -36,8 +57,12 @@ class ActionServer(Protocol):
         """The action types on offer, in the order in which tools are listed."""
         ...
 
-    def observe(self) -> Observation:
-        """The view from where the body stands now."""
+    def observe(self) -> Sighting:
+        """The view from where the body stands now.
+
+        Raises:
+            EngineError: The world itself failed, or showed what cannot be.
+        """
         ...
 
     def execute(self, action: Action) -> ActionResult:
@@ -48,27 +73,25 @@ class ActionServer(Protocol):
         """
         ...
 
-    def agent(self) -> AgentState:
-        """The body now."""
+    def refuse(self, error: InvalidActionError) -> ActionResult:
+        """Answer a call that is no valid action: nothing changes."""
         ...
 
     def say(self, text: str) -> None:
         """Deliver the final answer through the body."""
         ...
 
-    def state_hash(self) -> str:
-        """Digest of the world now."""
-        ...
+    def load(self, saved: str) -> str:
+        """Go back to a saved state.
 
-    def save(self) -> str:
-        """World, body and what was seen so far, as text: enough to go on from here elsewhere."""
-        ...
+        Args:
+            saved: What an earlier answer gave, or the state itself from a record.
 
-    def load(self, saved: str) -> None:
-        """Go back to what `save` gave.
+        Returns:
+            Digest of the world then.
 
         Raises:
-            EngineError: The text is damaged or belongs to another scene.
+            EngineError: It is damaged or belongs to another scene.
         """
         ...
 
@@ -80,6 +103,5 @@ def execute_call(
     try:
         action = parse(name, arguments, server.actions)
     except InvalidActionError as error:
-        feedback = Feedback.of_error(error)
-        return ActionResult(feedback, server.agent(), None, server.state_hash(), server.save())
+        return server.refuse(error)
     return server.execute(action)

@@ -8,7 +8,7 @@ A tool from outside the package is the same pair, handed to the server::
 
     def wave(context: ToolContext, action: Wave) -> Feedback: ...
 
-    LocalActionServer(engine, tools=(*PAPER_TOOLS, Tool(Wave, wave)))
+    LocalActionServer(world, tools=(*PAPER_TOOLS, Tool(Wave, wave)))
 """
 
 from __future__ import annotations
@@ -19,17 +19,26 @@ from typing import Any, Protocol
 
 from adamo_vh.action import Code, Drop, Feedback, Inspect, Look, Pick, Survey, Walk
 from adamo_vh.action_server import feedback
-from adamo_vh.engine import FLOOR, Engine, supporting_object
+from adamo_vh.engine import FLOOR, Body, SceneInfo, supporting_object
 from adamo_vh.errors import InvalidActionError
 from adamo_vh.geometry import Vec3
 
+OUTSIDE_M = 0.5
+"""A point up to this far outside the room means the nearest one inside: models aim a little below
+the floor or behind a wall."""
+
 
 class ToolContext(Protocol):
-    """What a tool may use: the engine, and the tags that the agent knows."""
+    """What a tool may use: the body, and the tags that the agent knows; never the whole truth."""
 
     @property
-    def engine(self) -> Engine:
-        """The world."""
+    def body(self) -> Body:
+        """What acts and senses."""
+        ...
+
+    @property
+    def scene(self) -> SceneInfo:
+        """The room's public facts."""
         ...
 
     def tag(self, object_id: int) -> str:
@@ -64,16 +73,17 @@ class Tool:
 
 
 def inside(context: ToolContext, x: float, y: float, z: float) -> Vec3:
-    """A point of the room.
+    """The point of the room that is nearest to one that is in it, or a little outside.
 
     Raises:
-        InvalidActionError: It is outside.
+        InvalidActionError: It is far outside.
     """
-    scene, point = context.engine.scene, Vec3(x, y, z)
-    if not scene.contains(point):
+    scene, asked = context.scene, Vec3(x, y, z)
+    point = scene.nearest(asked)
+    if point.distance(asked) > OUTSIDE_M:
         raise InvalidActionError(
             Code.OUTSIDE_ROOM,
-            f"{point} is outside the room: x from {scene.x_min:g} to {scene.x_max:g}, "
+            f"{asked} is outside the room: x from {scene.x_min:g} to {scene.x_max:g}, "
             f"y from {scene.y_min:g} to {scene.y_max:g}, z from 0 to {scene.height_m:g}.",
         )
     return point
@@ -82,31 +92,33 @@ def inside(context: ToolContext, x: float, y: float, z: float) -> Vec3:
 def look(context: ToolContext, action: Look) -> Feedback:
     """Turn body and gaze to a point."""
     point = inside(context, action.x, action.y, action.z)
-    return feedback.looked(context.engine.look_at(point))
+    said = feedback.looked(context.body.look(point))
+    return feedback.moved_inside(said, Vec3(action.x, action.y, action.z), point)
 
 
 def walk(context: ToolContext, action: Walk) -> Feedback:
     """Walk to a point or the nearest reachable place."""
     point = inside(context, action.x, action.y, action.z)
-    return feedback.walked(context.engine.walk_to(point), point)
+    said = feedback.walked(context.body.walk(point), point)
+    return feedback.moved_inside(said, Vec3(action.x, action.y, action.z), point)
 
 
 def pick(context: ToolContext, action: Pick) -> Feedback:
     """Take a seen object."""
     object_id = context.seen_object(action.object)
-    tag, held = context.tag(object_id), context.engine.body().held
+    tag, held = context.tag(object_id), context.body.state().held
     if held == object_id:
         raise InvalidActionError(Code.HAND_FULL, f"{tag} is already in your hand.")
     if held is not None:
         raise InvalidActionError(
             Code.HAND_FULL, f"your hand already holds {context.tag(held)}; drop it first."
         )
-    return feedback.picked(context.engine.pick(object_id), tag)
+    return feedback.picked(context.body.pick(object_id), tag)
 
 
 def drop(context: ToolContext, action: Drop) -> Feedback:
     """Put the held object down."""
-    held = context.engine.body().held
+    held = context.body.state().held
     if held is None:
         raise InvalidActionError(Code.HAND_EMPTY, "your hand is empty; pick the object first.")
     if context.seen_object(action.object) != held:
@@ -114,8 +126,10 @@ def drop(context: ToolContext, action: Drop) -> Feedback:
             Code.NOT_HELD, f"{action.object} is not in your hand; it holds {context.tag(held)}."
         )
     point = inside(context, action.x, action.y, action.z)
-    report = context.engine.drop(point)
-    return feedback.dropped(report, context.tag(held), point, _support(context, report.support))
+    report = context.body.drop(point)
+    support = _support(context, report.support)
+    said = feedback.dropped(report, context.tag(held), point, support, context.body.info)
+    return feedback.moved_inside(said, Vec3(action.x, action.y, action.z), point)
 
 
 def inspect(context: ToolContext, action: Inspect) -> Feedback:

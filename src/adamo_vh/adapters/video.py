@@ -24,7 +24,7 @@ from adamo_vh.observation import Frame
 from adamo_vh.record.trajectory import Acted, Ended, Event, Observed, Started, Thought
 from adamo_vh.record.turn import Wish
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.runtime.embodiment import Body
+from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.stage import FRAMES_PER_S
 
 WIDTH, HEIGHT = 1280, 720
@@ -128,7 +128,7 @@ class VideoRecorder:
         """Stand, breathe and blink while the text can be read; drawn at a third of the rate."""
         for i in range(0, round(seconds * FRAMES_PER_S), 3):
             self._standing_s += 3 / FRAMES_PER_S
-            with self._engine.stage.idling(self._engine.figure, self._standing_s):
+            with self._engine.stage.idling(self._engine.body.stance, self._standing_s):
                 self._moment(i / FRAMES_PER_S)
             self._writer.write(self._canvas)
             self._writer.write(self._canvas)
@@ -136,11 +136,11 @@ class VideoRecorder:
     def _moment(self, _: float) -> bool:
         """Add one picture. The eyes' is small and drawn every other time."""
         stage = self._engine.stage
-        shown = stage.shown(self._engine.figure)
-        room = stage.picture(self._engine.figure, self._follow(shown.body))
+        shown = stage.shown(self._engine.body.stance)
+        room = stage.picture(self._engine.body.stance, self._follow(shown.body))
         self._canvas[:, : _ROOM_PX[0]] = room[:, :, ::-1]
         if self._count % 2 == 0:
-            eyes = stage.picture(self._engine.figure, shown.body.camera(*_EYES_PX), head=False)
+            eyes = stage.picture(self._engine.body.stance, shown.body.camera(*_EYES_PX), head=False)
             self._canvas[: _EYES_PX[1], _ROOM_PX[0] :] = eyes[:, :, ::-1]
         self._count += 1
         text = self._subtitles(WIDTH - _ROOM_PX[0], HEIGHT - _EYES_PX[1])
@@ -148,7 +148,7 @@ class VideoRecorder:
         self._writer.write(self._canvas)
         return True
 
-    def _follow(self, body: Body) -> Camera:
+    def _follow(self, body: Stance) -> Camera:
         """A camera in front and to the side, inside the room, that moves softly."""
         scene, at = self._engine.scene, body.position
         angle = body.heading_rad + math.radians(50.0)

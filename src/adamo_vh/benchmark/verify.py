@@ -10,7 +10,7 @@ from adamo_vh.benchmark.checkers import Score, score
 from adamo_vh.benchmark.conditions import Condition
 from adamo_vh.benchmark.oracle import Oracle
 from adamo_vh.benchmark.tasks import TASKS, Task
-from adamo_vh.engine import Engine
+from adamo_vh.engine import World
 from adamo_vh.perception import Labeling, PerceptionConfig
 
 MAX_STEPS = 60
@@ -38,7 +38,7 @@ class Verification:
 
 
 def verify_tasks(
-    engine: Engine, labeling: Labeling, tasks: Sequence[Task] = TASKS
+    engine: World, labeling: Labeling, tasks: Sequence[Task] = TASKS
 ) -> Iterator[Verification]:
     """Play oracle and idle for tasks, one after another."""
     for task in tasks:
@@ -56,9 +56,7 @@ def verify_tasks(
         )
 
 
-def play_oracle(
-    engine: Engine, labeling: Labeling, task: Task, goals: Sequence[Condition]
-) -> Score:
+def play_oracle(engine: World, labeling: Labeling, task: Task, goals: Sequence[Condition]) -> Score:
     """Let the oracle play towards goals through the same four tools, and score the task.
 
     Args:

@@ -17,7 +17,7 @@ from rich.console import Console
 from adamo_vh.cli.progress import Progress
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.forecast import Forecast
-from adamo_vh.engine import Engine
+from adamo_vh.engine import World
 from adamo_vh.episode.result import EpisodeResult, to_json
 from adamo_vh.errors import ConfigError
 from adamo_vh.record.termination import Limits, TerminationReason
@@ -71,7 +71,7 @@ def _announce(ahead: Forecast, budget: Budget) -> None:
 
 
 @contextmanager
-def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> Iterator[Engine]:
+def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> Iterator[World]:
     """An engine whose episode is filmed; the film is finished at the end."""
     from adamo_vh.adapters.video import VideoRecorder
     from adamo_vh.runtime.builtin import BuiltinEngine

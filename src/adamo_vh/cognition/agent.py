@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from adamo_vh.action import Inspect, action_name
-from adamo_vh.action_server import ActionResult, ActionServer, execute_call
+from adamo_vh.action_server import ActionResult, ActionServer, Sighting, execute_call
 from adamo_vh.cognition.doubts import Doubts
 from adamo_vh.cognition.guards import Guard, LoopGuard, ProtocolGuard
 from adamo_vh.cognition.memory.short_term import Result, ShortTermMemory
@@ -87,6 +87,8 @@ class Agent:
         self._observers: tuple[Observer, ...] = (*self._guards, *observers)
         self._tools = offered(server.actions, config.profile)
         self._steps = 0
+        self._state_hash = ""
+        """Digest of the world after the last answer of the server."""
 
     def run(self, instruction: str) -> Ended:
         """Carry out one instruction; a further one goes on in the same world and memory.
@@ -133,9 +135,15 @@ class Agent:
         self._watch = Stopwatch()
         self._first_step = self._steps
         self._doubts = Doubts(self._profile)
-        server = self._server
-        self._tell(Started(instruction, self._system_prompt, server.state_hash(), server.save()))
-        self._memory.instruct(instruction, self._observe())
+        saved, sighting = "", None
+        try:
+            sighting = self._server.observe()
+            saved = sighting.saved
+            self._note(sighting)
+        finally:
+            # Without a first view the record still says what was asked.
+            self._tell(Started(instruction, self._system_prompt, self._state_hash, saved))
+        self._memory.instruct(instruction, self._perceived(sighting.observation))
 
     def _stop(self) -> TerminationReason | None:
         """The first reason to stop before another question."""
@@ -189,20 +197,21 @@ class Agent:
     def _execute(self, name: str, arguments: Mapping[str, Any] | None) -> ActionResult:
         started = time.monotonic()
         result = execute_call(self._server, name, arguments)
+        self._note(result)
         self._steps += 1
         self._tell(acted(self._steps, name, arguments, result, time.monotonic() - started))
         for frame in result.pictures:
             self._tell(shown(self._steps, frame), frame)
         if result.observation is not None:
-            self._perceived(result.observation, result.state_hash)
+            self._perceived(result.observation)
         return result
 
     def _result(self, wish: Wish, text: str) -> Result:
-        return Result(wish.call.id, wish.call.name, text, self._server.agent())
+        return Result(wish.call.id, wish.call.name, text, self._body)
 
     def _look_again(self, results: list[Result]) -> None:
         """With fresh views on, see what a turn has changed since the last view."""
-        if self._profile.fresh_view and self._server.state_hash() != self._seen_state:
+        if self._profile.fresh_view and self._state_hash != self._seen_state:
             executed = [i for i, result in enumerate(results) if result.outcome is not None]
             last = executed[-1] if executed else -1
             results[last] = replace(results[last], view=self._observe())
@@ -218,11 +227,17 @@ class Agent:
         told = [*results[: done - 1], replace(results[done - 1], text=text)]
         return replace(message, calls=message.calls[:done]), *told
 
-    def _observe(self) -> Observation:
-        return self._perceived(self._server.observe(), self._server.state_hash())
+    def _note(self, answer: ActionResult | Sighting) -> None:
+        """Note how body and world stand after an answer of the server."""
+        self._body, self._state_hash = answer.agent, answer.state_hash
 
-    def _perceived(self, view: Observation, state_hash: str) -> Observation:
-        self._seen_state = state_hash
+    def _observe(self) -> Observation:
+        sighting = self._server.observe()
+        self._note(sighting)
+        return self._perceived(sighting.observation)
+
+    def _perceived(self, view: Observation) -> Observation:
+        self._seen_state = self._state_hash
         self._tell(observed(self._steps, view), view.frame)
         return view
 
@@ -231,7 +246,7 @@ class Agent:
             self._server.say(answer)
         steps, seconds = self._steps - self._first_step, self._watch.seconds
         why = next((guard.why for guard in self._guards if guard.verdict() is reason), "")
-        ended = Ended(steps, reason, answer, self._server.state_hash(), seconds, why)
+        ended = Ended(steps, reason, answer, self._state_hash, seconds, why)
         self._tell(ended)
         return ended
 

@@ -40,10 +40,10 @@ def replay(server: ActionServer, recorded: Trajectory, start: int = 0) -> Replay
     began = next((e for e in recorded.events if isinstance(e, Started)), None)
     if began is None:
         raise RecordError("The episode has no beginning.")
-    server.load(acts[start - 1].saved if start else began.saved)
+    now = server.load(acts[start - 1].saved if start else began.saved)
     mismatches, frames_differ = [], 0
     before = acts[start - 1].state_hash if start else began.state_hash
-    if server.state_hash() != before:
+    if now != before:
         mismatches.append(f"the state after step {start} differs from the recorded one")
     frame: Frame | None = None
     for event in _events_after(recorded, start):
@@ -57,7 +57,7 @@ def replay(server: ActionServer, recorded: Trajectory, start: int = 0) -> Replay
                 )
         if isinstance(event, Observed):
             # A view that no action brought was asked for: at the start, or to see what changed.
-            seen = frame or server.observe().frame
+            seen = frame or server.observe().observation.frame
             frames_differ += frame_name(seen) != event.frame
             frame = None
     return ReplayReport(len(acts) - start, tuple(mismatches), frames_differ)

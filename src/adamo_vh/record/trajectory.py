@@ -39,7 +39,7 @@ class Started:
     system_prompt: str
     state_hash: str
     saved: str
-    """What `ActionServer.save` gave before the first view."""
+    """The saved state with the first view: a replay can start here."""
     type: Literal["started"] = "started"
 
 
@@ -122,7 +122,7 @@ class Acted:
     agent: AgentState
     state_hash: str
     saved: str
-    """What `ActionServer.save` gave afterwards: a replay can start here."""
+    """The saved state afterwards: a replay can start here."""
     world_s: float
     type: Literal["acted"] = "acted"
 

@@ -1,4 +1,4 @@
-"""The body: where it stands, where it looks, what it holds.
+"""The stance of the body: where it stands, where it looks, what it holds.
 
 This is the state that actions decide. How the figure looks in it, and on the way from one state to
 the next, is the matter of `human.motion`.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from adamo_vh.geometry import Camera, Vec3, wrap_angle
+from adamo_vh.geometry import Box, Camera, Vec3, wrap_angle
 from adamo_vh.observation import BodyState
 
 EYE_HEIGHT_M = 1.6
@@ -25,8 +25,8 @@ MAX_PITCH_RAD = math.radians(80.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
-    """A pose of the body; every change makes a new one."""
+class Stance:
+    """How the body stands; every change makes a new one."""
 
     position: Vec3
     heading_rad: float
@@ -46,11 +46,12 @@ class Body:
             self.position.z + local.z,
         )
 
-    def state(self) -> BodyState:
-        """The plain data that others see."""
-        return BodyState(self.position, self.heading_rad, self.gaze, self.eyes, self.held)
+    def state(self, held_box: Box | None = None) -> BodyState:
+        """The plain data that others see; the box is that of what the hand holds."""
+        held = self.held
+        return BodyState(self.position, self.heading_rad, self.gaze, self.eyes, held, held_box)
 
-    def facing(self, point: Vec3) -> tuple[Body, bool]:
+    def facing(self, point: Vec3) -> tuple[Stance, bool]:
         """Turn to a point, with the torso and then the eyes.
 
         Returns:
@@ -72,7 +73,7 @@ class Body:
         pitch = math.copysign(MAX_PITCH_RAD, pitch)
         return replace(turned, gaze=eyes + _direction(turned.heading_rad, pitch) * distance), False
 
-    def walked(self, end: Vec3, heading_rad: float) -> Body:
+    def walked(self, end: Vec3, heading_rad: float) -> Stance:
         """Stand at the end of a way, looking straight ahead."""
         moved = replace(self, position=end, heading_rad=wrap_angle(heading_rad))
         return replace(moved, gaze=moved.eyes + _direction(moved.heading_rad, 0.0))
@@ -85,12 +86,8 @@ class Body:
         self, point: Vec3, vertical_fov_rad: float, width_px: int, height_px: int
     ) -> Camera:
         """A view from the eyes, centred on a point, whatever the gaze is."""
-        eyes = self.eyes
-        line = point - eyes
-        flat = math.hypot(line.x, line.y)
-        yaw = math.atan2(line.y, line.x) if flat > 1e-6 else self.heading_rad
-        pitch = math.atan2(line.z, flat)
-        return Camera(eyes, yaw, pitch, vertical_fov_rad, width_px, height_px)
+        size_px = (width_px, height_px)
+        return Camera.towards(self.eyes, point, vertical_fov_rad, size_px, self.heading_rad)
 
 
 def _direction(yaw_rad: float, pitch_rad: float) -> Vec3:

@@ -15,7 +15,7 @@ import numpy as np
 from adamo_vh.engine import FLOOR, object_support
 from adamo_vh.geometry import Array, Vec3
 from adamo_vh.runtime.solids import Solid, Solids
-from adamo_vh.runtime.world import World, WorldObject
+from adamo_vh.runtime.world import CompiledWorld, WorldObject
 
 if TYPE_CHECKING:
     import mujoco
@@ -30,7 +30,7 @@ _UPWARD = 0.5
 """Least vertical part of a contact normal that carries."""
 
 
-def settle(world: World, held: int | None) -> None:
+def settle(world: CompiledWorld, held: int | None) -> None:
     """Simulate until everything rests, at most a few simulated seconds.
 
     Args:
@@ -43,12 +43,15 @@ def settle(world: World, held: int | None) -> None:
     before = data.qpos.copy()
     data.qvel[:] = 0
     data.qacc_warmstart[:] = 0
-    touchable = _set_touch(world, held)
+    fixed = [world.objects[i] for i in sorted(world.absent)]
+    if held is not None:
+        fixed.append(world.objects[held])
+        touchable = set_touch(world, world.objects[held], (0, 0))
     steps = int(_MAX_SETTLE_S / model.opt.timestep)
     for step in range(1, steps + 1):
         mujoco.mj_step(model, data)
-        if held is not None:
-            _hold(world, world.objects[held], before)
+        for item in fixed:
+            _hold(world, item, before)
         if step % _CHECK_EVERY == 0 and _is_still(world):
             break
     for item in world.objects.values():
@@ -56,28 +59,28 @@ def settle(world: World, held: int | None) -> None:
     data.qvel[:] = 0
     mujoco.mj_forward(model, data)
     if held is not None:
-        model.geom_contype[list(world.objects[held].geoms)] = touchable[0]
-        model.geom_conaffinity[list(world.objects[held].geoms)] = touchable[1]
+        set_touch(world, world.objects[held], touchable)
 
 
-def _set_touch(world: World, held: int | None) -> tuple[int, int]:
-    """Let the held object touch nothing; returns the collision bits to put back."""
-    if held is None:
-        return 0, 0
-    model, geoms = world.model, list(world.objects[held].geoms)
+def set_touch(world: CompiledWorld, item: WorldObject, bits: tuple[int, int]) -> tuple[int, int]:
+    """Set the collision bits of an object; (0, 0) lets it touch nothing.
+
+    Returns:
+        The bits that it had.
+    """
+    model, geoms = world.model, list(item.geoms)
     kept = int(model.geom_contype[geoms[0]]), int(model.geom_conaffinity[geoms[0]])
-    model.geom_contype[geoms] = 0
-    model.geom_conaffinity[geoms] = 0
+    model.geom_contype[geoms], model.geom_conaffinity[geoms] = bits
     return kept
 
 
-def _hold(world: World, item: WorldObject, qpos: Array) -> None:
+def _hold(world: CompiledWorld, item: WorldObject, qpos: Array) -> None:
     data = world.data
     data.qpos[item.qpos : item.qpos + 7] = qpos[item.qpos : item.qpos + 7]
     data.qvel[item.qvel : item.qvel + 6] = 0
 
 
-def _is_still(world: World) -> bool:
+def _is_still(world: CompiledWorld) -> bool:
     speed = world.data.qvel.reshape(-1, 6)
     return bool(
         (np.linalg.norm(speed[:, :3], axis=1) < _STILL_M_S).all()
@@ -92,14 +95,25 @@ def _undo_creep(data: mujoco.MjData, item: WorldObject, before: Array) -> None:
         data.qpos[pose] = before[pose]
 
 
-def place(world: World, object_id: int, position: Vec3) -> None:
+def place(world: CompiledWorld, object_id: int, position: Vec3) -> None:
     """Put the centre of an object's box somewhere, at rest and turned as it is."""
     item = world.objects[object_id]
     world.data.qpos[item.qpos : item.qpos + 3] = position.array()
     world.data.qvel[item.qvel : item.qvel + 6] = 0
 
 
-def supports(world: World, held: int | None) -> dict[int, str | None]:
+def put_down(world: CompiledWorld, object_id: int, position: Vec3, held: int | None) -> None:
+    """Put the centre of an object's box just above a place, and let everything come to rest."""
+    place(world, object_id, position + Vec3(0.0, 0.0, 0.001))
+    settle(world, held)
+
+
+def solids_on(world: CompiledWorld, excluded: int | None) -> list[Solid]:
+    """The objects in the room as prisms, but one."""
+    return [Solid.around(world.box(item.id)) for item in world.present() if item.id != excluded]
+
+
+def supports(world: CompiledWorld, held: int | None) -> dict[int, str | None]:
     """What each object rests on, from the contacts that carry it.
 
     Returns:
@@ -107,7 +121,7 @@ def supports(world: World, held: int | None) -> dict[int, str | None]:
         support name of another object, or None for what is held or in the air. Furniture goes
         before objects.
     """
-    carriers: dict[int, set[str]] = {i: set() for i in world.objects}
+    carriers: dict[int, set[str]] = {item.id: set() for item in world.present()}
     contact = world.data.contact
     slopes = contact.frame[:, 2]
     for i in np.flatnonzero(np.abs(slopes) >= _UPWARD):
@@ -126,7 +140,7 @@ def supports(world: World, held: int | None) -> dict[int, str | None]:
     return found
 
 
-def _carrier(world: World, geom: int, z: float) -> str:
+def _carrier(world: CompiledWorld, geom: int, z: float) -> str:
     """Name of what a geom belongs to, for something that lies on it at height z."""
     other = world.objects.get(int(world.object_of_geom[geom]))
     if other is not None:
@@ -141,7 +155,7 @@ def _carrier(world: World, geom: int, z: float) -> str:
 
 
 def raycast(
-    world: World, origin: Vec3, directions: Array, ignored: int | None
+    world: CompiledWorld, origin: Vec3, directions: Array, ignored: int | None
 ) -> Sequence[Vec3 | None]:
     """First hits of rays with what can be seen, except one object.
 
@@ -178,7 +192,7 @@ def raycast(
     ]
 
 
-def line_is_free(world: World, start: Vec3, end: Vec3) -> bool:
+def line_is_free(world: CompiledWorld, start: Vec3, end: Vec3) -> bool:
     """Whether no furniture is between two points."""
     return not _gathered(world.solids).block(start, end)
 

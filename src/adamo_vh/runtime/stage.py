@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.observation import Percept, SeenObject
 from adamo_vh.runtime import physics
-from adamo_vh.runtime.embodiment import Body
+from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.motion import BodyFrame, Motion, idle
 from adamo_vh.runtime.human.postures import at_rest
 from adamo_vh.runtime.human.skin_mujoco import pose_human
 from adamo_vh.runtime.rendering import SceneRenderer
-from adamo_vh.runtime.world import World
+from adamo_vh.runtime.world import CompiledWorld
 
 FRAMES_PER_S = 15
 _OFF_THE_WALL_M = 0.005
@@ -34,7 +34,7 @@ then is that moment. Returns False to stop the action there."""
 class Stage:
     """Shows one world."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: CompiledWorld) -> None:
         """Prepare; graphics are opened when the first picture is drawn."""
         self._world = world
         self._renderer: SceneRenderer | None = None
@@ -49,11 +49,11 @@ class Stage:
             self._renderer = SceneRenderer(self._world.model, self._world.object_of_geom)
         return self._renderer
 
-    def _standing(self, body: Body) -> BodyFrame:
+    def _standing(self, body: Stance) -> BodyFrame:
         """The figure between actions."""
         return BodyFrame(body, at_rest(body, self._size(body.held)))
 
-    def hand(self, body: Body) -> Vec3:
+    def hand(self, body: Stance) -> Vec3:
         """Where the hand of a standing figure is, and with it what it holds."""
         return self.held_at(self._standing(body))
 
@@ -78,7 +78,7 @@ class Stage:
     def _size(self, object_id: int | None) -> Vec3 | None:
         return None if object_id is None else self._world.objects[object_id].size
 
-    def view(self, body: Body, camera: Camera, *, from_the_eyes: bool) -> Percept:
+    def view(self, body: Stance, camera: Camera, *, from_the_eyes: bool) -> Percept:
         """Draw the world as it is, with the figure in it. An unchanged view is not drawn twice.
 
         Args:
@@ -95,7 +95,7 @@ class Stage:
         self._last = (key, percept)
         return percept
 
-    def detail(self, body: Body, camera: Camera) -> Percept:
+    def detail(self, body: Stance, camera: Camera) -> Percept:
         """Draw a small part of the view from the eyes, without shadows, which show little there."""
         return self._percept(self.shown(body), camera, head=False, shadow=False)
 
@@ -109,19 +109,20 @@ class Stage:
             i: SeenObject(i, self._world.objects[i].class_name, self._world.box(i))
             for i in sorted(present)
         }
-        return Percept(rgb, tuple(layer.ids for layer in layers), seen, shown.body.state(), camera)
+        body = shown.body.state(self._world.box_of(shown.body.held))
+        return Percept(rgb, tuple(layer.ids for layer in layers), seen, body, camera)
 
-    def picture(self, body: Body, camera: Camera, *, head: bool = True) -> NDArray[np.uint8]:
+    def picture(self, body: Stance, camera: Camera, *, head: bool = True) -> NDArray[np.uint8]:
         """Only the colour picture of this moment, (H, W, 3); without the head to look out of it."""
         self._pose(self.shown(body))
         return self.renderer.color(self._world.data, camera, head=head)
 
-    def shown(self, body: Body) -> BodyFrame:
+    def shown(self, body: Stance) -> BodyFrame:
         """What is to be seen now: a moment of an action, or the figure between actions."""
         return self._within_walls(self._moment or self._standing(body))
 
     @contextmanager
-    def idling(self, body: Body, seconds: float) -> Iterator[None]:
+    def idling(self, body: Stance, seconds: float) -> Iterator[None]:
         """Show the figure some seconds into standing still: it breathes and blinks."""
         self._moment = idle(body, seconds, self._size(body.held))
         try:
@@ -135,11 +136,11 @@ class Stage:
 
     def perform(
         self,
-        end: Body,
+        end: Stance,
         make: Callable[[], Motion],
         thing: int | None = None,
         rest: Vec3 | None = None,
-    ) -> Body:
+    ) -> Stance:
         """Let an action be watched, if somebody watches.
 
         Args:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,9 +58,11 @@ class WorldSurface:
 
 
 @dataclass(frozen=True, slots=True)
-class World:
+class CompiledWorld:
     """A compiled world."""
 
+    name: str
+    """Of the scene."""
     model: mujoco.MjModel
     data: mujoco.MjData
     room: Room
@@ -71,8 +73,18 @@ class World:
     furniture_of_body: dict[int, str]
     furniture: tuple[FurnitureOutline, ...]
     object_of_geom: NDArray[np.int16]
-    start_qpos: NDArray[np.float64]
-    """As placed by the scene, before settling."""
+    brightness: tuple[float, ...]
+    """How bright the scene has its lights."""
+    absent: set[int] = field(default_factory=set)
+    """Ids of the objects that are out of the room."""
+
+    def present(self) -> Iterator[WorldObject]:
+        """Every object that is in the room, by ascending id."""
+        return (item for item in self.objects.values() if item.id not in self.absent)
+
+    def box_of(self, object_id: int | None) -> Box | None:
+        """The box of an object now; None for none."""
+        return None if object_id is None else self.box(object_id)
 
     def box(self, object_id: int) -> Box:
         """The box of an object now."""
@@ -90,7 +102,9 @@ def scene_assets(scene: Scene) -> dict[str, Asset]:
     return {name: load_asset(name) for name in sorted(names)}
 
 
-def build_world(scene: Scene, figure: Figure, assets: Mapping[str, Asset] | None = None) -> World:
+def build_world(
+    scene: Scene, figure: Figure, assets: Mapping[str, Asset] | None = None
+) -> CompiledWorld:
     """Compile a scene with a person in it.
 
     Args:
@@ -130,7 +144,8 @@ def build_world(scene: Scene, figure: Figure, assets: Mapping[str, Asset] | None
     for world_object in objects.values():
         object_of_geom[model.geom_bodyid == world_object.body] = world_object.id
     furniture_of_body = {model.body(p.name).id: p.name for p in scene.furniture}
-    return World(
+    return CompiledWorld(
+        scene.name,
         model,
         data,
         scene.room,
@@ -140,7 +155,7 @@ def build_world(scene: Scene, figure: Figure, assets: Mapping[str, Asset] | None
         furniture_of_body,
         tuple(_seen_from_above(piece, assets[piece.asset]) for piece in scene.furniture),
         object_of_geom,
-        data.qpos.copy(),
+        tuple(light.diffuse for light in scene.lights),
     )
 
 
@@ -236,11 +251,16 @@ def _add_light(spec: mujoco.MjSpec, light: Light) -> None:
         type=mujoco.mjtLightType.mjLIGHT_SPOT,
         cutoff=80.0,
         exponent=0.6,
-        diffuse=[light.diffuse, light.diffuse * 0.98, light.diffuse * 0.94],
+        diffuse=light_colour(light.diffuse),
         specular=[0.15, 0.15, 0.15],
         ambient=[0.0, 0.0, 0.0],
         castshadow=light.shadow,
     )
+
+
+def light_colour(diffuse: float) -> list[float]:
+    """Red, green and blue of a light of some brightness: a little warm."""
+    return [diffuse, diffuse * 0.98, diffuse * 0.94]
 
 
 def furniture_surfaces(piece: Furniture, asset: Asset) -> list[WorldSurface]:

@@ -7,18 +7,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS, LocalActionServer, Tool
-from adamo_vh.engine import Engine
+from adamo_vh.engine import World, acting_body
 from adamo_vh.perception import PerceptionConfig
 
 if TYPE_CHECKING:
     from adamo_vh.cognition.profile import Profile
     from adamo_vh.episode.result import EpisodeConfig
 
-HAND_REACHES_M = 2.07
-"""Height to which the hand reaches; nothing can be put higher."""
 
-
-def create_engine(scene: str = "s1", figure: str = "mara") -> Engine:
+def create_engine(scene: str = "s1", figure: str = "mara") -> World:
     """The built-in engine with a scene.
 
     Args:
@@ -39,7 +36,7 @@ def tools_of(profile: Profile) -> Sequence[Tool]:
     return LEAN_TOOLS if profile.closeups else PAPER_TOOLS
 
 
-def instructions(config: EpisodeConfig, engine: Engine, server: LocalActionServer) -> str:
+def instructions(config: EpisodeConfig, engine: World, server: LocalActionServer) -> str:
     """The system prompt of an episode: what its scene, labeling, tools and profile call for."""
     from adamo_vh.benchmark.conditions import NEAR_M
     from adamo_vh.cognition.instructions import system_prompt
@@ -48,7 +45,7 @@ def instructions(config: EpisodeConfig, engine: Engine, server: LocalActionServe
 
 
 def open_server(
-    config: EpisodeConfig, engine: Engine, tools: Sequence[Tool] | None = None
+    config: EpisodeConfig, engine: World, tools: Sequence[Tool] | None = None
 ) -> LocalActionServer:
     """The action server of an episode.
 
@@ -60,7 +57,7 @@ def open_server(
     perception = PerceptionConfig(
         labeling=config.labeling,
         grid=config.grid,
-        points_below_m=HAND_REACHES_M if config.profile.terse else math.inf,
+        points_below_m=acting_body(engine).info.reach_top_m if config.profile.terse else math.inf,
         points_on_walls=not config.profile.terse,
     )
     return LocalActionServer(

@@ -19,7 +19,7 @@ from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.cognition.guards import AsRecorded, Guard
 from adamo_vh.cognition.profile import Profile
 from adamo_vh.cognition.profile import profile as find_profile
-from adamo_vh.engine import Engine
+from adamo_vh.engine import World
 from adamo_vh.episode.result import (
     MANIFEST,
     RESULT,
@@ -78,7 +78,7 @@ def run_episode(
     guards: Sequence[Guard] = (),
     observers: Sequence[Observer] = (),
     announce: Callable[[Forecast], None] | None = None,
-    engine: Engine | None = None,
+    engine: World | None = None,
 ) -> EpisodeResult:
     """Run one episode.
 
@@ -175,7 +175,7 @@ def chosen_profile(name: str | Profile, switches: Mapping[str, Any] | None) -> P
     return replace(name, **(switches or {}))
 
 
-def describe(config: EpisodeConfig, model: Model, engine: Engine) -> Manifest:
+def describe(config: EpisodeConfig, model: Model, engine: World) -> Manifest:
     """The manifest of an episode that is about to begin."""
     versions = {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}}
     now = datetime.now(UTC).isoformat(timespec="seconds")
@@ -186,7 +186,7 @@ def describe(config: EpisodeConfig, model: Model, engine: Engine) -> Manifest:
 def create_agent(
     config: EpisodeConfig,
     model: Model,
-    engine: Engine,
+    engine: World,
     tools: Sequence[Tool] | None,
     guards: Sequence[Guard],
     observers: Sequence[Observer],
@@ -207,7 +207,7 @@ def create_agent(
 def _play(
     manifest: Manifest,
     model: Model,
-    engine: Engine,
+    engine: World,
     kept: tuple[TrajectoryWriter, Path] | None,
     tools: Sequence[Tool] | None,
     watchers: tuple[Sequence[Guard], Sequence[Observer]],

@@ -6,7 +6,7 @@ from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.cognition.forecast import Forecast, forecast
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
 from adamo_vh.cognition.turns import offered
-from adamo_vh.engine import Engine
+from adamo_vh.engine import World
 from adamo_vh.episode.result import EpisodeConfig
 from adamo_vh.inference.cost.tokens import estimate_image, estimate_request, rule_for
 from adamo_vh.session.engines import instructions, open_server
@@ -21,7 +21,7 @@ _OUTPUT_PER_CALL = 80
 """A note of two sentences and a call with its arguments."""
 
 
-def forecast_episodes(config: EpisodeConfig, engine: Engine, episodes: int = 1) -> Forecast:
+def forecast_episodes(config: EpisodeConfig, engine: World, episodes: int = 1) -> Forecast:
     """Forecast what episodes take, from their first prompt.
 
     The prompt is made exactly; how many calls follow is a guess: for a task one for each of its
@@ -39,7 +39,7 @@ def forecast_episodes(config: EpisodeConfig, engine: Engine, episodes: int = 1) 
     server = open_server(config, engine)
     words = instructions(config, engine, server)
     memory = ShortTermMemory(words, config.k, profile, config.text_form)
-    memory.instruct(config.instruction, server.observe())
+    memory.instruct(config.instruction, server.observe().observation)
     first = estimate_request(memory.messages(), offered(server.actions, profile), rule)
     # A profile that keeps only the last pictures does not add any.
     looks = 0.0 if profile.pictures else _LOOKS_PER_CALL

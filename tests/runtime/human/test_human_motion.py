@@ -11,7 +11,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from adamo_vh.geometry import Vec3, wrap_angle
-from adamo_vh.runtime.embodiment import Body
+from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.anatomy import centre_of_mass, grip, limit_excess, mirrored
 from adamo_vh.runtime.human.clips import clips, walk_clip
 from adamo_vh.runtime.human.gait import gait
@@ -43,7 +43,7 @@ from adamo_vh.runtime.navigation import Path
 RATE_HZ = 60
 MOST_TURN_DEG = 14.0
 """In one frame at 60 Hz: the lids of a blink are the fastest, then the swinging shins."""
-START = Body(Vec3(0.4, -0.3, 0.0), 0.3, Vec3(1.6, 0.1, 1.4))
+START = Stance(Vec3(0.4, -0.3, 0.0), 0.3, Vec3(1.6, 0.1, 1.4))
 few = settings(max_examples=12, deadline=None, phases=[Phase.explicit, Phase.generate])
 coordinates = st.floats(-2.5, 2.5, allow_nan=False)
 bearings = st.floats(-math.pi, math.pi)
@@ -55,26 +55,26 @@ TARGETS = [
 ]
 
 
-def path_to(body: Body, *corners: tuple[float, float]) -> Path:
+def path_to(body: Stance, *corners: tuple[float, float]) -> Path:
     return Path((body.position, *(Vec3(x, y, 0.0) for x, y in corners)))
 
 
-def walk(body: Body, *corners: tuple[float, float]) -> Motion:
+def walk(body: Stance, *corners: tuple[float, float]) -> Motion:
     path = path_to(body, *corners)
     a, b = path.points[-2:]
     return walk_motion(body, path, body.walked(b, math.atan2(b.y - a.y, b.x - a.x)))
 
 
-def ahead(body: Body, distance_m: float, height_m: float) -> Vec3:
+def ahead(body: Stance, distance_m: float, height_m: float) -> Vec3:
     cos, sin = math.cos(body.heading_rad), math.sin(body.heading_rad)
     return body.position + Vec3(cos * distance_m, sin * distance_m, height_m)
 
 
-def pick(body: Body, target: Vec3) -> Motion:
+def pick(body: Stance, target: Vec3) -> Motion:
     return pick_motion(body, replace(body.facing(target)[0], held=7), target)
 
 
-def drop(body: Body, target: Vec3) -> Motion:
+def drop(body: Stance, target: Vec3) -> Motion:
     return drop_motion(body, replace(body.facing(target)[0], held=None), target)
 
 

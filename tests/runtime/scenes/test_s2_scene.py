@@ -20,7 +20,7 @@ from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.embodiment import REACH_M, REACH_TOP_M
 from adamo_vh.runtime.human.looks import load_figure
 from adamo_vh.runtime.scenes import load_scene
-from adamo_vh.runtime.world import World, build_world
+from adamo_vh.runtime.world import CompiledWorld, build_world
 
 TABLE, COFFEE, SIDEBOARD = "dining table", "coffee table/top", "sideboard"
 LOWER, MIDDLE, TOP = "tall shelf/lower", "tall shelf/middle", "tall shelf/top"
@@ -79,7 +79,7 @@ def test_the_outlines_from_above_are_turned_as_the_furniture_is(engine: BuiltinE
 
 
 @pytest.fixture(scope="module")
-def world() -> World:
+def world() -> CompiledWorld:
     """The compiled scene, before anything settles."""
     return build_world(load_scene("s2"), load_figure())
 
@@ -115,7 +115,7 @@ def test_furniture_has_the_places_and_sizes_of_the_paper() -> None:
     assert 4 <= len(chairs) <= 6
 
 
-def test_levels_have_the_heights_of_the_paper(world: World) -> None:
+def test_levels_have_the_heights_of_the_paper(world: CompiledWorld) -> None:
     heights = {surface.support: surface.center.z for surface in world.surfaces}
     for support, height in LEVELS.items():
         assert heights[support] == pytest.approx(height, abs=1e-6)
@@ -135,7 +135,9 @@ def test_one_light_casts_shadows() -> None:
 # --- everything rests ---------------------------------------------------------------------------
 
 
-def test_everything_settles_where_the_scene_says(engine: BuiltinEngine, world: World) -> None:
+def test_everything_settles_where_the_scene_says(
+    engine: BuiltinEngine, world: CompiledWorld
+) -> None:
     heights = {surface.support: surface.center.z for surface in world.surfaces}
     state = engine.state()
     for placed in load_scene("s2").objects:
@@ -148,15 +150,15 @@ def test_everything_settles_where_the_scene_says(engine: BuiltinEngine, world: W
 
 def test_what_rests_goes_on_resting(engine: BuiltinEngine) -> None:
     before = engine.state()
-    engine.pick(TAPE)
-    engine.drop(Vec3(-1.5, -2.5, 0.0))
+    engine.body.pick(TAPE)
+    engine.body.drop(Vec3(-1.5, -2.5, 0.0))
     after = engine.state()
     for item in before.objects:
         if item.id != TAPE:
             assert after.object(item.id).box == item.box
 
 
-def test_furniture_and_objects_do_not_overlap(world: World) -> None:
+def test_furniture_and_objects_do_not_overlap(world: CompiledWorld) -> None:
     """Nothing is pushed out of anything: the settled scene has no deep contact."""
     import mujoco
 
@@ -167,12 +169,12 @@ def test_furniture_and_objects_do_not_overlap(world: World) -> None:
 
 def test_the_rug_counts_as_floor_and_hides_nothing(engine: BuiltinEngine) -> None:
     on_the_rug = Vec3(0.05, -0.20, 0.0)
-    engine.pick(KEY)
-    engine.drop(on_the_rug)
+    engine.body.pick(KEY)
+    engine.body.drop(on_the_rug)
     key = engine.state().object(KEY)
     assert key.support == FLOOR
     assert key.box.center.horizontal_distance(on_the_rug) < 0.05
-    engine.look_at(key.box.center)
+    engine.body.look(key.box.center)
     assert KEY in seen(engine, SMALL)
 
 
@@ -190,8 +192,8 @@ def test_the_rug_counts_as_floor_and_hides_nothing(engine: BuiltinEngine) -> Non
 def test_one_can_put_things_under_and_between(
     engine: BuiltinEngine, name: str, point: Vec3, support: str
 ) -> None:
-    engine.pick(KEY)
-    engine.drop(point)
+    engine.body.pick(KEY)
+    engine.body.drop(point)
     key = engine.state().object(KEY)
     assert key.support == support, name
     assert key.box.center.horizontal_distance(point) < 0.15
@@ -206,8 +208,8 @@ def test_every_corner_can_be_walked_to(engine: BuiltinEngine) -> None:
     for area in corners:
         engine.reset(0)
         middle = Vec3((area.x_min + area.x_max) / 2, (area.y_min + area.y_max) / 2, 0.0)
-        engine.walk_to(middle)
-        assert inside(engine.body().position, area), area.name
+        engine.body.walk(middle)
+        assert inside(engine.body.state().position, area), area.name
 
 
 @pytest.mark.parametrize("object_id", sorted({*GIVEN, *CHOSEN}))
@@ -216,9 +218,9 @@ def test_every_object_can_be_found_and_picked(engine: BuiltinEngine, object_id: 
     assert center.z <= REACH_TOP_M
     assert any(object_id in seen(engine, SMALL) for _ in vantages(engine, center))
     engine.reset(0)
-    assert engine.pick(object_id).outcome is Outcome.DONE
+    assert engine.body.pick(object_id).outcome is Outcome.DONE
     assert engine.state().body.held == object_id
-    assert engine.body().position.horizontal_distance(center) <= REACH_M + 1e-6
+    assert engine.body.state().position.horizontal_distance(center) <= REACH_M + 1e-6
 
 
 @pytest.mark.parametrize("labeling", [Labeling.SEM, Labeling.OPAQ])
@@ -228,7 +230,7 @@ def test_the_first_view_lists_what_the_paper_shows(
     view = engine.capture(*FULL)
     config = PerceptionConfig(labeling=labeling)
     names = engine.object_names
-    listed = {item.tag for item in perceive(view, engine.raycast, config, names).objects}
+    listed = {item.tag for item in perceive(view, engine.body.rays, config, names).objects}
     wanted = {labeling.tag(i, names[i]) for i in IN_FIRST_VIEW}
     assert wanted <= listed <= wanted | {labeling.tag(0, names[0])}
 
@@ -276,9 +278,9 @@ def vantages(engine: BuiltinEngine, target: Vec3) -> Iterator[None]:
     for distance in (1.0, 1.6, 0.6):
         for angle in np.arange(0.0, 2 * math.pi, math.pi / 4):
             place = target + Vec3(math.cos(angle), math.sin(angle), 0.0) * distance
-            if engine.scene.contains(place, -0.25):
-                engine.walk_to(Vec3(place.x, place.y, 0.0))
-                engine.look_at(target)
+            if engine.scene.is_within_walls(place, -0.25):
+                engine.body.walk(Vec3(place.x, place.y, 0.0))
+                engine.body.look(target)
                 yield
 
 

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from adamo_vh.geometry import Array, Vec3, wrap_angle
-from adamo_vh.runtime.embodiment import Body
+from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.anatomy import eyes, grip
 from adamo_vh.runtime.human.gait import Gait, gait
 from adamo_vh.runtime.human.handling import Handling
@@ -46,7 +46,7 @@ _PATH_PITCH_RAD = math.radians(-11.0)
 class BodyFrame:
     """The body at one moment."""
 
-    body: Body
+    body: Stance
     """The state the body would be in if the motion stopped now."""
     pose: Pose
     """In the frame of the body: origin at `body.position`, X along `body.heading_rad`."""
@@ -90,8 +90,8 @@ class Event:
 class Motion:
     """The way from one state of the body to another."""
 
-    start: Body
-    end: Body
+    start: Stance
+    end: Stance
     duration_s: float
     inside: Callable[[float], BodyFrame]
     """The frame at a time strictly between start and end."""
@@ -107,7 +107,7 @@ class Motion:
             return BodyFrame(self.start, at_rest(self.start, self.size))
         return self.inside(time_s)
 
-    def body_at(self, time_s: float) -> Body:
+    def body_at(self, time_s: float) -> Stance:
         """The state in which a motion cancelled at a time leaves the body, feet together."""
         if time_s >= self.duration_s:
             return self.end
@@ -132,12 +132,12 @@ class Motion:
         return Motion(self.start, other.end, until + other.duration_s, inside, events, size)
 
 
-def idle(body: Body, time_s: float, size: Vec3 | None = None) -> BodyFrame:
+def idle(body: Stance, time_s: float, size: Vec3 | None = None) -> BodyFrame:
     """A body that stands and waits: it breathes and blinks, and its state does not change."""
     return BodyFrame(body, at_rest(body, size, time_s))
 
 
-def look_motion(start: Body, end: Body, size: Vec3 | None = None) -> Motion:
+def look_motion(start: Stance, end: Stance, size: Vec3 | None = None) -> Motion:
     """Look somewhere else, turning on the spot if the end says so; the gaze goes ahead.
 
     Args:
@@ -161,7 +161,7 @@ def look_motion(start: Body, end: Body, size: Vec3 | None = None) -> Motion:
     return _on_foot(start, end, steps, duration, gaze, size)
 
 
-def walk_motion(start: Body, path: Path, end: Body, size: Vec3 | None = None) -> Motion:
+def walk_motion(start: Stance, path: Path, end: Stance, size: Vec3 | None = None) -> Motion:
     """Walk along a path, eyes on the way, arms swinging unless one carries something.
 
     Args:
@@ -188,7 +188,7 @@ def walk_motion(start: Body, path: Path, end: Body, size: Vec3 | None = None) ->
     return _on_foot(start, end, steps, duration, gaze, size)
 
 
-def pick_motion(start: Body, end: Body, target: Vec3, size: Vec3 | None = None) -> Motion:
+def pick_motion(start: Stance, end: Stance, target: Vec3, size: Vec3 | None = None) -> Motion:
     """Turn to a thing, reach for it, take it and bring it in front of the body.
 
     Args:
@@ -200,7 +200,7 @@ def pick_motion(start: Body, end: Body, target: Vec3, size: Vec3 | None = None) 
     return _handle(start, end, target, size, "grasp")
 
 
-def drop_motion(start: Body, end: Body, target: Vec3, size: Vec3 | None = None) -> Motion:
+def drop_motion(start: Stance, end: Stance, target: Vec3, size: Vec3 | None = None) -> Motion:
     """Turn to a spot, put the held thing there and let the arm hang.
 
     Args:
@@ -213,7 +213,7 @@ def drop_motion(start: Body, end: Body, target: Vec3, size: Vec3 | None = None) 
 
 
 def _handle(
-    start: Body, end: Body, target: Vec3, size: Vec3 | None, kind: Literal["grasp", "release"]
+    start: Stance, end: Stance, target: Vec3, size: Vec3 | None, kind: Literal["grasp", "release"]
 ) -> Motion:
     facing = replace(end, held=start.held)
     local = about_z(-end.heading_rad) @ (target - end.position).array()
@@ -228,7 +228,7 @@ def _handle(
     return look_motion(start, facing, size).then(act)
 
 
-def _gaze(body: Body) -> tuple[float, float, float]:
+def _gaze(body: Stance) -> tuple[float, float, float]:
     """Yaw (relative to the heading), pitch and distance of the gaze."""
     line = line_of_gaze(body)
     pitch = math.atan2(line[2], math.hypot(line[0], line[1]))
@@ -238,8 +238,8 @@ def _gaze(body: Body) -> tuple[float, float, float]:
 
 
 def _on_foot(
-    start: Body,
-    end: Body,
+    start: Stance,
+    end: Stance,
     steps: Gait,
     duration_s: float,
     gaze: Callable[[float, float], tuple[float, float, float]],
@@ -251,7 +251,7 @@ def _on_foot(
         stand = steps.stand(time_s)
         yaw, pitch, far = gaze(time_s, stand.heading_rad)
         yaw = min(max(yaw, -math.radians(150.0)), math.radians(150.0))
-        body = Body(
+        body = Stance(
             Vec3(stand.x, stand.y, start.position.z),
             wrap_angle(stand.heading_rad),
             start.gaze,

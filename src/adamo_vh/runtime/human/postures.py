@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from adamo_vh.geometry import Array, Vec3
-from adamo_vh.runtime.embodiment import Body
+from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.anatomy import ELBOW_AXIS, fingers, lids, turned
 from adamo_vh.runtime.human.ik import STANDING_FEET, arm_to, plant_feet
 from adamo_vh.runtime.human.looks import LIDS_CLOSED_RAD
@@ -158,7 +158,7 @@ def holding(size: Vec3 | None, hand: str = "r") -> dict[str, Array]:
     return {f"hand_{hand}": np.eye(3)} | fingers(hand, closed)
 
 
-def line_of_gaze(body: Body) -> Array:
+def line_of_gaze(body: Stance) -> Array:
     """(3,) unit direction of the gaze of a body, in its own frame."""
     line = body.gaze.array() - body.eyes.array()
     size = float(np.linalg.norm(line))
@@ -167,7 +167,7 @@ def line_of_gaze(body: Body) -> Array:
     return np.asarray(about_z(-body.heading_rad) @ line / size)
 
 
-def at_rest(body: Body, size: Vec3 | None = None, time_s: float = 0.0) -> Pose:
+def at_rest(body: Stance, size: Vec3 | None = None, time_s: float = 0.0) -> Pose:
     """The posture of a body that stands, looks and perhaps carries; what every motion ends in.
 
     Args:

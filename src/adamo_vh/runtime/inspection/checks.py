@@ -72,7 +72,7 @@ def _rest(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
 def _floor(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
     """Where the agent starts, and whether every area can be walked to."""
     start = Vec3(*scene.agent.position, 0.0)
-    floor = engine.floor()
+    floor = engine.body.floor()
     if not floor.can_stand(start):
         yield error("agent.position", "the body does not fit there", "move it 0.3 m off furniture")
         return
@@ -85,11 +85,11 @@ def _floor(scene: Scene, engine: BuiltinEngine) -> Iterator[SceneFinding]:
 
 def _reach(scene: Scene, engine: BuiltinEngine, until: float) -> Iterator[SceneFinding]:
     """Whether every object can be seen from somewhere, and taken."""
-    start = engine.body().position
-    if not engine.floor().can_stand(start):
+    start = engine.body.state().position
+    if not engine.body.floor().can_stand(start):
         return
-    places = engine.floor().ways_from(start).places()
-    first_view = engine.capture(1920, 1080)
+    places = engine.body.floor().ways_from(start).places()
+    first_view, body = engine.capture(1920, 1080), engine.body.info
     for i, item in enumerate(scene.objects):
         if time.monotonic() > until:
             yield warning(
@@ -99,11 +99,11 @@ def _reach(scene: Scene, engine: BuiltinEngine, until: float) -> Iterator[SceneF
             )
             return
         target = engine.world.box(item.id).center
-        if engine.way_to(target, 0.25) is None:
+        if engine.body.way_to(target) is None:
             yield error(
                 f"objects[{i}].position",
                 f"object {item.id} cannot be reached from any place to stand",
-                "put it within 0.9 m of open floor and below 2.07 m",
+                f"put it within {body.reach_m:g} m of open floor and below {body.reach_top_m:g} m",
             )
         if item.id not in first_view.objects and not _is_visible(engine, item.id, target, places):
             yield error(
@@ -120,17 +120,11 @@ def _is_visible(engine: BuiltinEngine, object_id: int, target: Vec3, places: Arr
     step = max(1, len(good) // _VANTAGES)
     for x, y in good[::step][: 2 * _VANTAGES]:
         eyes = Vec3(float(x), float(y), EYE_HEIGHT_M)
-        camera = _looking(eyes, target)
+        camera = Camera.towards(eyes, target, FOV_Y_RAD, _PICTURE)
         layers = engine.stage.renderer.layers(engine.data, camera)
         if any((layer.ids == object_id).sum() >= _PIXELS for layer in layers):
             return True
     return False
-
-
-def _looking(eyes: Vec3, target: Vec3) -> Camera:
-    line = target - eyes
-    pitch = math.atan2(line.z, math.hypot(line.x, line.y))
-    return Camera(eyes, math.atan2(line.y, line.x), pitch, FOV_Y_RAD, *_PICTURE)
 
 
 def cameras(scene: Scene, engine: BuiltinEngine) -> dict[str, Camera]:

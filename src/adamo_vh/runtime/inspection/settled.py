@@ -7,10 +7,10 @@ from adamo_vh.runtime import physics
 from adamo_vh.runtime.human.looks import Figure
 from adamo_vh.runtime.inspection.arrangement import inspect_arrangement
 from adamo_vh.runtime.scenes.scene import Scene
-from adamo_vh.runtime.world import World, build_world, scene_assets
+from adamo_vh.runtime.world import CompiledWorld, build_world, scene_assets
 
 
-def settled_world(scene: Scene, figure: Figure) -> World:
+def settled_world(scene: Scene, figure: Figure) -> CompiledWorld:
     """Compile a scene with a person in it, and let everything come to rest.
 
     Raises:

@@ -13,7 +13,7 @@ from adamo_vh.geometry import Vec3
 from adamo_vh.observation import NOTHING, Observation, Percept
 from adamo_vh.runtime.navigation import BODY_HEIGHT_M, BODY_RADIUS_M
 from adamo_vh.runtime.solids import Solids
-from adamo_vh.runtime.world import World
+from adamo_vh.runtime.world import CompiledWorld
 
 DEPTH_M = 0.003
 """How deep things may be in each other, in the floor or in a wall: contacts are a little soft."""
@@ -26,7 +26,7 @@ AS_ASKED_M = 0.05
 class Soundness:
     """The rules of one world."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: CompiledWorld) -> None:
         """Take the furniture of a world.
 
         Args:
