@@ -195,7 +195,7 @@ def parse_toml(text: str, source: str | Path) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise FileError(f"{source}: not valid TOML: {readable(str(error))}.") from None
+        raise FileError(f"{source} is not valid TOML: {readable(str(error))}.") from None
 
 
 _TEXTS = {
@@ -262,7 +262,7 @@ def read_json(path: str | Path, *, max_bytes: int = _MAX_BYTES) -> Any:
         what = f"more than {_DEEPEST_JSON} brackets inside each other; open fewer"
         raise FileError(f"{path}: {what}.") from None
     except ValueError as error:
-        raise FileError(f"{path}: not valid JSON: {readable(str(error))}.") from None
+        raise FileError(f"{path} is not valid JSON: {readable(str(error))}.") from None
 
 
 def _refuse(constant: str) -> NoReturn:

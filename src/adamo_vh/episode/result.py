@@ -16,7 +16,8 @@ from adamo_vh.benchmark.tasks import task
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.profile import PAPER, Profile
 from adamo_vh.engine import WorldState, supporting_object
-from adamo_vh.errors import ConfigError, RecordError
+from adamo_vh.errors import ConfigError, FileError, RecordError
+from adamo_vh.files import read_text, write_whole
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.model import ModelKind, Sampling, Usage
 from adamo_vh.inference.remote.capabilities import Capabilities
@@ -27,6 +28,7 @@ from adamo_vh.record.trajectory import Thought, Trajectory
 FORMAT = 1
 MANIFEST = "manifest.json"
 RESULT = "result.json"
+_MOST_BYTES = 50_000_000
 _T = TypeVar("_T")
 
 
@@ -242,10 +244,8 @@ def to_json(record: Manifest | EpisodeResult) -> Any:
 
 def write_record(folder: Path, name: str, record: Manifest | EpisodeResult) -> None:
     """Write a record into a run folder, whole or not at all."""
-    folder.mkdir(parents=True, exist_ok=True)
-    half = folder / f"{name}.part"
-    half.write_bytes(TypeAdapter(type(record)).dump_json(record, indent=1))
-    half.replace(folder / name)
+    data = TypeAdapter(type(record)).dump_json(record, indent=1)
+    write_whole(folder / name, data, durable=True)
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -271,7 +271,9 @@ def _read(path: Path, record_type: type[_T]) -> _T:
     if not path.is_file():
         raise RecordError(f"{path.parent} is no run folder: {path.name} is missing.")
     try:
-        return TypeAdapter(record_type).validate_json(path.read_bytes())
+        return TypeAdapter(record_type).validate_json(read_text(path, max_bytes=_MOST_BYTES))
+    except FileError as error:
+        raise RecordError(str(error)) from None
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import tomllib
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -12,7 +11,8 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
-from adamo_vh.errors import ConfigError
+from adamo_vh.errors import ConfigError, FileError
+from adamo_vh.files import read_toml
 
 _STRICT = ConfigDict(extra="forbid")
 
@@ -165,12 +165,9 @@ def load_faults(path: str | Path) -> Faults:
         ConfigError: The file is missing or wrong: names the file, the rule and the fix.
     """
     try:
-        data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise ConfigError(f"Faults {path} cannot be read: {reason}. Check the path.") from error
-    except ValueError as error:
-        raise ConfigError(f"Faults {path} is not valid TOML: {error}.") from error
+        data = read_toml(path)
+    except FileError as error:
+        raise ConfigError(f"Faults {error}") from error
     try:
         return TypeAdapter(Faults).validate_python(data)
     except ValidationError as error:

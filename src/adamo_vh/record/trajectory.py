@@ -8,7 +8,6 @@ their content). Everything else, the score too, can be computed from these.
 from __future__ import annotations
 
 import hashlib
-import os
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,6 +20,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from adamo_vh.action import Feedback
 from adamo_vh.action_server import ActionResult
 from adamo_vh.errors import RecordError
+from adamo_vh.files import write_whole
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
 from adamo_vh.inference.model import Ending, Reply, Rung, Usage
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
@@ -288,9 +288,7 @@ class TrajectoryWriter:
         if frame is not None:
             path = self._folder / FRAMES / frame_name(frame)
             if not path.exists():
-                half = path.with_suffix(".part")
-                half.write_bytes(frame.data)
-                os.replace(half, path)
+                write_whole(path, frame.data)
         self._file.write(_codec().dump_json(event) + b"\n")
         self._file.flush()
 

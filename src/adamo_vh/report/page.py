@@ -26,6 +26,7 @@ from adamo_vh.episode.result import (
     read_result,
     total_cost,
 )
+from adamo_vh.files import write_whole
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.cost.tokens import is_estimated
 from adamo_vh.inference.model import Usage
@@ -107,9 +108,7 @@ def write_page(folder: Path) -> Path:
         read_result(folder),
         lambda name: (folder / FRAMES / name).read_bytes(),
     )
-    half = folder / f"{PAGE}.part"
-    half.write_bytes(page.encode("utf-8", "xmlcharrefreplace"))
-    return half.replace(folder / PAGE)
+    return write_whole(folder / PAGE, page.encode("utf-8", "xmlcharrefreplace"))
 
 
 def render_page(

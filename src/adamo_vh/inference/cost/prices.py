@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import math
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -25,7 +24,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from adamo_vh.errors import ConfigError, ModelConfigError
+from adamo_vh.errors import ConfigError, FileError, ModelConfigError
+from adamo_vh.files import read_toml
 from adamo_vh.inference.model import Usage
 from adamo_vh.inference.remote.endpoint import Endpoint, parse_endpoint
 
@@ -110,11 +110,9 @@ def _own_price(uri: str) -> Price | None:
 def _read_table(path: Path, changed: int) -> Mapping[str, Price]:
     """The user's table; `changed` makes an edited file a new one."""
     try:
-        entries = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(f"{path} cannot be read: {error.strerror}.") from None
-    except ValueError as error:
-        raise ConfigError(f"{path} is not valid TOML: {error}.") from None
+        entries = read_toml(path)
+    except FileError as error:
+        raise ConfigError(f"Prices: {error}") from None
     return {uri: _read_entry(path, uri, entry) for uri, entry in entries.items()}
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import difflib
 import json
-import os
 from collections.abc import Sequence
 from itertools import zip_longest
 from pathlib import Path
@@ -16,7 +15,8 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.errors import CassetteError, RecordError
+from adamo_vh.errors import CassetteError, FileError, RecordError
+from adamo_vh.files import append_line, read_json, write_whole
 from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.messages import Message
 from adamo_vh.inference.model import Model, ModelKind, Reply, Rung, Sampling, close_model
@@ -62,9 +62,8 @@ class Recorder:
             raise RecordError(f"{folder} already holds a cassette; choose another folder.")
         if self._count:
             raise RecordError(f"{folder} holds no cassette to go on with.")
-        self._path.parent.mkdir(parents=True, exist_ok=True)
         label = {"version": _VERSION, "model": model.name, "kind": model.kind}
-        (self._path.parent / LABEL).write_text(json.dumps(label) + "\n", encoding="utf-8")
+        write_whole(self._path.parent / LABEL, json.dumps(label).encode() + b"\n")
 
     def _cut(self, count: int) -> None:
         """Keep the first calls alone."""
@@ -81,9 +80,7 @@ class Recorder:
                 f"{folder} holds {len(lines)} calls, and {count} were answered. Delete it to go "
                 "on without a recording."
             )
-        half = self._path.with_suffix(".part")
-        half.write_bytes(b"".join(lines[:count]))
-        os.replace(half, self._path)
+        write_whole(self._path, b"".join(lines[:count]))
 
     @property
     def name(self) -> str:
@@ -102,8 +99,7 @@ class Recorder:
         reply = self._model.complete(messages, tools, sampling)
         self._count += 1
         call = Call(self._count, request_of(messages, tools, sampling), clean_reply(reply))
-        with self._path.open("ab") as file:
-            file.write(codec().dump_json(call) + b"\n")
+        append_line(self._path, codec().dump_json(call))
         return reply
 
     def close(self) -> None:
@@ -219,13 +215,13 @@ def _difference(call: Call, asked: Request) -> str:
 def _read_label(folder: Path) -> tuple[str, ModelKind]:
     path = folder / LABEL
     try:
-        label = json.loads(path.read_text(encoding="utf-8"))
-    except OSError:
+        label = read_json(path)
+    except FileError as error:
+        if path.exists():
+            raise RecordError(f"{error} The cassette is damaged; record it again.") from None
         raise RecordError(
             f"{folder} is no cassette: {LABEL} is missing. `adamo-vh run --record` makes one."
         ) from None
-    except ValueError:
-        raise RecordError(f"{path} is damaged: it is no JSON.") from None
     if not isinstance(label, dict) or label.get("version") != _VERSION:
         raise RecordError(f"{path} is not of version {_VERSION}; record the cassette again.")
     try:

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.errors import ConfigError
+from adamo_vh.errors import ConfigError, FileError
+from adamo_vh.files import read_json
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
 from adamo_vh.inference.model import ModelKind, Reply, Sampling
 
@@ -80,12 +81,9 @@ def load_script(path: str | Path) -> tuple[AIMessage, ...]:
         ConfigError: The file is missing or wrong: names the file, the entry and the fix.
     """
     try:
-        entries = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise ConfigError(f"Script {path} cannot be read: {reason}. Check the path.") from error
-    except (ValueError, RecursionError) as error:
-        raise ConfigError(f"Script {path} is not valid JSON: {error}.") from error
+        entries = read_json(path)
+    except FileError as error:
+        raise ConfigError(f"Script {error}") from error
     if not isinstance(entries, list):
         raise ConfigError(f"Script {path} must be a JSON list of entries, {_USAGE}.")
     return tuple(

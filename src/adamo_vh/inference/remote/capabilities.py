@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import os
-import tempfile
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
@@ -13,6 +11,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from adamo_vh.errors import FileError
+from adamo_vh.files import cache_folder, read_text, write_whole
 from adamo_vh.inference.model import Rung, Usage
 
 if TYPE_CHECKING:
@@ -80,37 +80,21 @@ def load_capabilities(uri: str) -> Capabilities | None:
         uri: Model URI.
     """
     try:
-        found = _codec().validate_json(_file(uri).read_bytes())
-    except (OSError, ValueError):
+        found = _codec().validate_json(read_text(_file(uri)))
+    except (FileError, ValueError):
         return None
     return found if found.uri == uri else None
 
 
 def save_capabilities(capabilities: Capabilities) -> None:
     """Keep what a probe found out; a cache that cannot be written is no error."""
-    path = _file(capabilities.uri)
-    data = _codec().dump_json(capabilities, indent=1)
-    with contextlib.suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        # Written beside the file and renamed: a reader never sees half a file.
-        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            Path(temporary).replace(path)
-        except BaseException:
-            Path(temporary).unlink(missing_ok=True)
-            raise
+    with contextlib.suppress(FileError):
+        write_whole(_file(capabilities.uri), _codec().dump_json(capabilities, indent=1))
 
 
 def _file(uri: str) -> Path:
-    folder = os.environ.get("ADAMO_VH_CACHE_DIR")
-    if not folder:
-        import platformdirs
-
-        folder = platformdirs.user_cache_dir("adamo-vh")
     key = hashlib.sha256(f"{version('adamo-vh')} {uri}".encode()).hexdigest()[:16]
-    return Path(folder) / "models" / f"{key}.json"
+    return cache_folder() / "models" / f"{key}.json"
 
 
 @cache

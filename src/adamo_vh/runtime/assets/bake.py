@@ -1,6 +1,6 @@
 """Keep built assets on disk, so that only the first run pays for the modelling.
 
-The cache lies in the user's cache folder, or in ADAMO_VH_CACHE_DIR. Its key covers the sources of
+Its key covers the sources of
 the assets and the libraries they are made with: a change of either builds anew.
 """
 
@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import io
 import json
-import os
-import tempfile
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -22,6 +21,8 @@ from typing import Any
 
 import numpy as np
 
+from adamo_vh.errors import FileError
+from adamo_vh.files import cache_folder, write_whole
 from adamo_vh.runtime.assets import catalog
 from adamo_vh.runtime.assets.asset import Asset, Collider, Looks, Material, Part, Surface
 
@@ -66,19 +67,14 @@ def load_built(name: str, build: Callable[[], Asset]) -> Asset:
     with contextlib.suppress(*_DAMAGE):
         return _read(path)
     asset = build()
-    with contextlib.suppress(OSError):
+    with contextlib.suppress(FileError):
         _write(asset, path)
     return asset
 
 
 def cache_file(name: str) -> Path:
     """Where the baked asset lies, or will lie."""
-    folder = os.environ.get("ADAMO_VH_CACHE_DIR")
-    if not folder:
-        import platformdirs
-
-        folder = platformdirs.user_cache_dir("adamo-vh")
-    return Path(folder) / "assets" / _key() / f"{name}.npz"
+    return cache_folder() / "assets" / _key() / f"{name}.npz"
 
 
 @cache
@@ -96,7 +92,6 @@ def _key() -> str:
 
 
 def _write(asset: Asset, path: Path) -> None:
-    """Write beside the file and rename: a reader never sees half a file."""
     arrays: dict[str, Any] = {}
     materials = []
     for i, part in enumerate(asset.parts):
@@ -115,15 +110,9 @@ def _write(asset: Asset, path: Path) -> None:
         "surfaces": [asdict(surface) for surface in asset.surfaces],
         "looks": asdict(asset.looks),
     }
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            np.savez(file, facts=np.array(json.dumps(facts)), **arrays)
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    packed = io.BytesIO()
+    np.savez(packed, facts=np.array(json.dumps(facts)), **arrays)
+    write_whole(path, packed.getvalue())
 
 
 def _read(path: Path) -> Asset:

@@ -7,7 +7,6 @@ from the catalog and never paths.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from importlib import resources
@@ -17,10 +16,10 @@ from typing import Annotated, ClassVar
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from adamo_vh.engine import Area, SceneInfo
-from adamo_vh.errors import SceneError
+from adamo_vh.errors import FileError, SceneError
+from adamo_vh.files import parse_toml, read_text
 
 _STRICT = ConfigDict(extra="forbid")
-_MAX_BYTES = 1_000_000
 _ROOM_M = (1.0, 20.0)
 """Least and largest side of a room: nothing farther than 20 m from the eyes is drawn."""
 
@@ -151,12 +150,11 @@ def load_scene(name_or_path: str) -> Scene:
     if path.suffix != ".toml" or not path.is_file():
         offer = ", ".join(_BUILT_IN)
         raise SceneError(f"There is no scene {name_or_path!r}. Use {offer} or a .toml file.")
-    if path.stat().st_size > _MAX_BYTES:
-        raise SceneError(f"{path}: larger than {_MAX_BYTES // 1000} kB; a scene file is text only.")
     try:
-        return parse_scene(path.read_text(encoding="utf-8"), str(path))
-    except UnicodeDecodeError:
-        raise SceneError(f"{path}: not UTF-8 text; save the file as UTF-8.") from None
+        text = read_text(path)
+    except FileError as error:
+        raise SceneError(str(error)) from None
+    return parse_scene(text, str(path))
 
 
 def parse_scene(text: str, source: str) -> Scene:
@@ -170,9 +168,9 @@ def parse_scene(text: str, source: str) -> Scene:
         SceneError: Names the source, the field and the fix.
     """
     try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"{source}: not valid TOML: {error}") from None
+        data = parse_toml(text, source)
+    except FileError as error:
+        raise SceneError(str(error)) from None
     try:
         scene = TypeAdapter(Scene).validate_python(data)
     except ValidationError as error:
