@@ -20,8 +20,7 @@ from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.cli.episode import parse_resolution
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.profile import PROFILES
-from adamo_vh.inference.cost.tokens import Metered
-from adamo_vh.inference.model import close_model
+from adamo_vh.inference.cost.tokens import metered
 from adamo_vh.session.players import create_player, fitting
 
 
@@ -56,13 +55,13 @@ def main() -> None:
                 scene=scene,
                 labeling=labeling,
                 profile=chosen,
-                model=Metered(player),
+                model=metered(player),
                 seed=arguments.seed,
                 resolution=arguments.resolution,
                 guards=[BudgetGuard(Budget(), ledger, caps)],
                 engine=engine,
             )
-            close_model(player)
+            player.info.close()
             row = {
                 "scene": scene,
                 "profile": profile,

@@ -23,7 +23,7 @@ import adamo_vh
 from adamo_vh.action import ToolSchema
 from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.inference.messages import HumanMessage, ImagePart, Message, ToolMessage
-from adamo_vh.inference.model import Model, ModelKind, Reply, Sampling
+from adamo_vh.inference.model import Model, ModelInfo, Reply, Sampling
 from adamo_vh.session.players import create_player
 
 Asked = tuple[tuple[Message, ...], tuple[ToolSchema, ...], Sampling]
@@ -37,14 +37,9 @@ class Listening:
     asked: list[Asked] = field(default_factory=list)
 
     @property
-    def name(self) -> str:
+    def info(self) -> ModelInfo:
         """That of the player."""
-        return self.player.name
-
-    @property
-    def kind(self) -> ModelKind:
-        """That of the player."""
-        return self.player.kind
+        return self.player.info
 
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling

@@ -41,7 +41,7 @@ from adamo_vh.inference.cost.tokens import (
     estimate_tools,
 )
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall, ToolMessage
-from adamo_vh.inference.model import ModelKind, Reply, Sampling, Usage
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling, Usage
 from adamo_vh.perception import PerceptionConfig
 from adamo_vh.record.turn import CONFIDENCE, NOTE
 
@@ -67,8 +67,7 @@ SWITCHES: dict[str, dict[str, Any]] = {
 class OraclePlayer:
     """Says a known sequence of actions in the way that a profile asks for, and counts tokens."""
 
-    name = "oracle"
-    kind = ModelKind.SCRIPTED
+    info = ModelInfo("oracle", ModelKind.SCRIPTED)
 
     def __init__(
         self, actions: Sequence[Action], chosen: Profile, rule: ImageRule, by_object: bool

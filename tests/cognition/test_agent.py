@@ -19,7 +19,7 @@ from adamo_vh.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo_vh.inference.model import Model, ModelKind, Reply, Sampling
+from adamo_vh.inference.model import Model, ModelInfo, ModelKind, Reply, Sampling
 from adamo_vh.inference.players.scripted import ScriptedModel
 from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.record.trajectory import Ended, Started, Trajectory
@@ -29,8 +29,7 @@ from adamo_vh.runtime.builtin import BuiltinEngine
 class Recorder:
     """A model that keeps the prompts it is given and answers through a function."""
 
-    name = "recorder"
-    kind = ModelKind.SCRIPTED
+    info = ModelInfo("recorder", ModelKind.SCRIPTED)
 
     def __init__(self, answer: Callable[[int], Reply]) -> None:
         self.prompts: list[list[Message]] = []

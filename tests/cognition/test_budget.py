@@ -17,7 +17,7 @@ from adamo_vh.cognition.forecast import forecast
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
-from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Rung, Sampling, Usage
 from adamo_vh.observation import AgentState
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Acted, Started, Thought, Trajectory
@@ -32,12 +32,10 @@ def thought(
     seconds: float = 0.0,
     *,
     rung: Rung | None = Rung.NATIVE,
-    settings: dict[str, str] | None = None,
+    estimated: bool = False,
 ) -> Thought:
-    usage = Usage(tokens, 0)
-    return Thought(
-        0, "", 1, "", (), usage, seconds, 9.0, cost_usd=usd, rung=rung, settings=settings or {}
-    )
+    usage = Usage(tokens, 0, estimated=estimated)
+    return Thought(0, "", 1, "", (), usage, seconds, 9.0, cost_usd=usd, rung=rung)
 
 
 @given(st.lists(st.tuples(AMOUNTS, AMOUNTS, st.floats(0, 10), st.integers(0, 3)), max_size=20))
@@ -132,11 +130,11 @@ def test_a_remote_reply_without_usage_or_price_is_not_free() -> None:
     assert guard.verdict() is TerminationReason.BUDGET
 
 
-@pytest.mark.parametrize("settings", [None, {"usage": "estimated"}])
-def test_players_without_a_provider_cost_nothing(settings: dict[str, str] | None) -> None:
+@pytest.mark.parametrize("estimated", [False, True])
+def test_players_without_a_provider_cost_nothing(estimated: bool) -> None:
     guard = BudgetGuard(Budget(usd=0.01))
-    tokens = 5000 if settings else 0
-    guard.notify(thought(tokens, usd=None, rung=None, settings=settings))
+    tokens = 5000 if estimated else 0
+    guard.notify(thought(tokens, usd=None, rung=None, estimated=estimated))
     assert guard.verdict() is None
     assert guard.spent.usd == 0
 
@@ -190,7 +188,8 @@ class Spending:
     """A model that looks about for ever, at a price."""
 
     def __init__(self, usd: float | None = 0.01) -> None:
-        self.name, self.kind, self.asked, self._usd = "spending", ModelKind.VLM, 0, usd
+        self.info = ModelInfo("spending", ModelKind.VLM)
+        self.asked, self._usd = 0, usd
 
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling

@@ -13,7 +13,7 @@ from adamo_vh.action_server import LEAN_TOOLS, LocalActionServer
 from adamo_vh.cognition.agent import Agent, AgentConfig
 from adamo_vh.cognition.profile import PROFILES, Profile
 from adamo_vh.inference.messages import AIMessage, HumanMessage, Message, ToolCall, ToolMessage
-from adamo_vh.inference.model import ModelKind, Reply, Sampling
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling
 from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.record.trajectory import Acted, Ended, Observed, Shown, Trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
@@ -25,8 +25,7 @@ LEAN = replace(TERSE, terse=False)
 class Player:
     """Answers through a list or a function, and keeps the prompts it was given."""
 
-    name = "player"
-    kind = ModelKind.SCRIPTED
+    info = ModelInfo("player", ModelKind.SCRIPTED)
 
     def __init__(self, answers: Sequence[Reply] | Callable[[int], Reply]) -> None:
         self.prompts: list[list[Message]] = []

@@ -33,15 +33,20 @@ def test_an_unknown_model_is_refused_with_a_list_of_the_known(uri: str) -> None:
 
 def test_the_baseline_is_rule_based() -> None:
     model = create_model("baseline")
-    assert model.name == "baseline"
-    assert model.kind is ModelKind.RULE_BASED
+    assert model.info.name == "baseline"
+    assert model.info.kind is ModelKind.RULE_BASED
 
 
 def test_a_random_player_is_made_from_its_seed() -> None:
     for uri in ("random", "random:7"):
-        assert create_model(uri).kind is ModelKind.RANDOM
+        assert create_model(uri).info.kind is ModelKind.RANDOM
     with pytest.raises(ModelConfigError, match="random:7"):
         create_model("random:often")
+
+
+def test_a_random_player_takes_the_seed_of_the_episode_unless_its_uri_names_one() -> None:
+    names = [create_model(uri, seed=5).info.name for uri in ("random", "random:7", "random:0")]
+    assert names == ["random:5", "random:7", "random"]
 
 
 def test_a_cassette_that_is_not_there_is_a_plain_error(tmp_path: Path) -> None:
@@ -78,8 +83,8 @@ def test_the_switch_lets_loopback_through_without_a_key(
     monkeypatch.delenv("OPENAI_API_KEY", raising=False)
     uri = f"openai:tiny@http://{host}/v1"
     model = create_model(uri, tools="native")
-    assert model.name == uri
-    assert model.kind is ModelKind.VLM
+    assert model.info.name == uri
+    assert model.info.kind is ModelKind.VLM
 
 
 def test_a_missing_key_names_its_variable(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,7 +13,7 @@ from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.cognition.profile import PROFILES
 from adamo_vh.episode.result import EpisodeConfig, read_manifest, read_result
 from adamo_vh.errors import CassetteError, ConfigError
-from adamo_vh.inference.cost.tokens import OPENAI_TILES, Metered, estimate_image
+from adamo_vh.inference.cost.tokens import OPENAI_TILES, estimate_image, metered
 from adamo_vh.inference.registry import create_model
 from adamo_vh.inference.remote.provider import ProviderModel
 from adamo_vh.record.termination import TerminationReason
@@ -119,7 +119,7 @@ def test_a_forecast_is_near_to_what_is_used(engine: BuiltinEngine) -> None:
     config = EpisodeConfig("x", task="T8", model=uri, resolution=SMALL)
     ahead = forecast_episodes(config, engine)
     result = adamo_vh.run_episode(
-        task="T8", model=Metered(create_model("baseline")), engine=engine, resolution=SMALL
+        task="T8", model=metered(create_model("baseline")), engine=engine, resolution=SMALL
     )
     each = result.usage.input_tokens / result.model_calls
     assert ahead.tokens_typical / ahead.calls == pytest.approx(each, rel=0.35)
@@ -129,7 +129,7 @@ def test_a_forecast_is_near_to_what_is_used(engine: BuiltinEngine) -> None:
 def test_lean_takes_fewer_tokens_for_the_same_task(engine: BuiltinEngine) -> None:
     spent = {}
     for name in ("paper", "lean"):
-        model = Metered(create_model("baseline"))
+        model = metered(create_model("baseline"))
         result = adamo_vh.run_episode(task="T8", model=model, engine=engine, profile=name)
         assert result.completion == 1.0
         spent[name] = result.usage.input_tokens

@@ -55,7 +55,7 @@ def test_every_rung_reaches_the_same_completion(engine: BuiltinEngine, task: str
             result = adamo_vh.run_episode(
                 task=task, model=model, engine=engine, resolution=SIZE, observers=[trajectory]
             )
-            model.close()
+            model.info.close()
         assert (result.completion, result.strict) == (1.0, 1.0), rung
         assert result.termination is TerminationReason.ANSWERED
         assert result.answer == brain.answer
@@ -94,9 +94,9 @@ def test_the_probe_finds_the_rung_on_which_the_model_succeeds(
     with FakeProvider(brain) as server:
         model = create_model(server.uri(), QUICK)
         assert isinstance(model, Ladder)
-        assert model.rung is rung
+        assert model.info.rung is rung
         result = adamo_vh.run_episode(task="T1", model=model, engine=engine, resolution=SIZE)
-        model.close()
+        model.info.close()
     assert result.completion == 1.0
 
 
@@ -118,7 +118,7 @@ def test_the_lean_profile_works_without_tool_calls(engine: BuiltinEngine, rung: 
             profile="lean",
             observers=[trajectory],
         )
-        model.close()
+        model.info.close()
     assert (result.completion, result.answer) == (1.0, "It is there.")
     assert result.missing_notes == 0
     calls = [call for thought in trajectory.thoughts for call in thought.calls]
@@ -131,7 +131,7 @@ def test_every_request_of_a_rung_without_tools_has_plain_turns(engine: BuiltinEn
     with FakeProvider(brain) as server:
         model = Ladder(ProviderModel(server.uri(), QUICK), Rung.REACT)
         adamo_vh.run_episode(task="T4", model=model, engine=engine, resolution=SIZE)
-        model.close()
+        model.info.close()
     for number, request in enumerate(brain.asked):
         roles = [message["role"] for message in request["messages"]]
         assert roles == ["system", *["user", "assistant"] * number, "user"]
@@ -151,7 +151,7 @@ def test_garbage_is_counted_and_not_scored_as_an_answer(engine: BuiltinEngine) -
         adamo_vh.run_episode(
             task="T1", model=model, engine=engine, resolution=SIZE, observers=[trajectory]
         )
-        model.close()
+        model.info.close()
     first, second, *_ = trajectory.thoughts
     assert "Action:" in first.unreadable
     assert first.requests == 2

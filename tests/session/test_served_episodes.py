@@ -33,7 +33,7 @@ from adamo_vh.inference.messages import (
     ToolMessage,
 )
 from adamo_vh.inference.model import ModelKind, Rung, Sampling
-from adamo_vh.inference.players.cassette import Recorder
+from adamo_vh.inference.players.cassette import taped
 from adamo_vh.inference.registry import create_model
 from adamo_vh.inference.remote.probe import probe
 from adamo_vh.inference.remote.provider import ProviderModel
@@ -201,7 +201,7 @@ def test_a_script_is_served_too(engine: BuiltinEngine, tmp_path: Path) -> None:
     path.write_text(json.dumps([{"note": "Mine.", "tool": "Pick", "args": {"object": "34"}}]))
     with serve_model(f"scripted:{path}") as served:
         model = ProviderModel(served.uri, QUICK)
-        assert model.kind is ModelKind.VLM
+        assert model.info.kind is ModelKind.VLM
         result = adamo_vh.run_episode(task="T1", model=model, engine=engine, resolution=SMALL)
     assert (result.completion, result.answer) == (1.0, "The script is finished.")
 
@@ -218,7 +218,7 @@ def test_a_cassette_is_served_and_refuses_another_prompt(
     engine: BuiltinEngine, tmp_path: Path
 ) -> None:
     settings: dict[str, Any] = {"task": "T4", "engine": engine, "resolution": SMALL}
-    recorder = Recorder(create_model("baseline"), tmp_path / "tape")
+    recorder = taped(create_model("baseline"), tmp_path / "tape")
     recorded = adamo_vh.run_episode(model=recorder, **settings)
     with serve_model(f"cassette:{tmp_path / 'tape'}") as served:
         played = adamo_vh.run_episode(model=ProviderModel(served.uri, QUICK), **settings)

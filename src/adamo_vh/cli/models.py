@@ -70,7 +70,7 @@ def check(uri: str, *, refresh: bool, as_json: bool) -> None:
     """Say what a model can do and how it will be asked; exit 1 if it cannot be reached."""
     local = create_player(uri) if uri.startswith("replay:") else create_local_model(uri)
     if local is not None:
-        _show_local(uri, local.kind, as_json=as_json)
+        _show_local(uri, local.info.kind, as_json=as_json)
         return
     known = None if refresh else load_capabilities(uri)
     try:

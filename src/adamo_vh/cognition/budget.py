@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from adamo_vh.errors import ConfigError
-from adamo_vh.inference.cost.tokens import is_estimated
 from adamo_vh.inference.model import Usage
 from adamo_vh.observation import Frame
 from adamo_vh.record.termination import TerminationReason
@@ -201,5 +200,5 @@ class BudgetGuard:
 
 def _is_free(thought: Thought) -> bool:
     """Whether no provider was asked: no wire, and no tokens that one has counted."""
-    counted = thought.usage != Usage() and not is_estimated(thought.settings)
+    counted = thought.usage != Usage() and not thought.usage.estimated
     return thought.cost_usd is None and thought.rung is None and not counted

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.messages import AIMessage, Message
+
+if TYPE_CHECKING:
+    from adamo_vh.inference.remote.capabilities import Capabilities
 
 
 class ModelKind(StrEnum):
@@ -37,7 +40,7 @@ class Sampling:
 
 @dataclass(frozen=True, slots=True)
 class Usage:
-    """Tokens of one reply, as the provider counts them; 0 for models without tokens."""
+    """Tokens of one reply, as the provider counts them; all 0 for models without tokens."""
 
     input_tokens: int = 0
     """All of the input, cached or not."""
@@ -47,6 +50,8 @@ class Usage:
     """Part of the input that a provider cache served."""
     reasoning_tokens: int = 0
     """Part of the output that was hidden reasoning."""
+    estimated: bool = False
+    """Whether a part of it is an estimate, because the provider did not count it."""
 
     def __add__(self, other: Usage) -> Usage:
         return Usage(
@@ -54,6 +59,7 @@ class Usage:
             self.output_tokens + other.output_tokens,
             self.cached_tokens + other.cached_tokens,
             self.reasoning_tokens + other.reasoning_tokens,
+            self.estimated or other.estimated,
         )
 
     @property
@@ -138,17 +144,32 @@ def _ending(reply: Reply) -> Ending:
     return Ending.ANSWER if reply.message.text.strip() else Ending.EMPTY
 
 
+def _nothing_to_close() -> None:
+    """A model without connections has nothing to close."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelInfo:
+    """What there is to know about a model besides its answers."""
+
+    name: str
+    """As in the URI that made it, without any secret."""
+    kind: ModelKind
+    """What kind of player it is."""
+    rung: Rung | None = None
+    """How it is asked for its calls; None for models without a wire."""
+    capabilities: Capabilities | None = None
+    """What a probe found out about it; None if it was not probed or has no wire."""
+    close: Callable[[], None] = field(default=_nothing_to_close, compare=False)
+    """Closes its connections."""
+
+
 class Model(Protocol):
     """Answers a conversation with a note and tool calls."""
 
     @property
-    def name(self) -> str:
-        """As in the URI that made it, without any secret."""
-        ...
-
-    @property
-    def kind(self) -> ModelKind:
-        """What kind of player it is."""
+    def info(self) -> ModelInfo:
+        """Its name, its kind, and what else there is to know; the same for as long as it lives."""
         ...
 
     def complete(
@@ -165,10 +186,3 @@ class Model(Protocol):
             ModelError: No answer could be had.
         """
         ...
-
-
-def close_model(model: Model) -> None:
-    """Close a model's connections, if it has any."""
-    close = getattr(model, "close", None)
-    if callable(close):
-        close()

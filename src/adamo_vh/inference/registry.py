@@ -31,6 +31,7 @@ def create_model(
     tools: str = AUTO,
     several_calls: bool = False,
     cache: bool = False,
+    seed: int = 0,
 ) -> Model:
     """Make the model of a URI.
 
@@ -48,9 +49,11 @@ def create_model(
             through native tools.
         cache: Ask providers that want to be asked (Anthropic) to cache the prompt's beginning;
             worth it only where the prompt grows at its end.
+        seed: Seed of the episode: of `random` where its URI names none, and sent to providers that
+            take one.
 
     Returns:
-        The model. A remote one is a `Ladder`, which has `capabilities` if it was ever probed.
+        The model. The `info` of a remote one says what a probe found out about it.
 
     Raises:
         ModelConfigError: The URI or `tools` is unknown, or the provider's package or key is
@@ -60,11 +63,11 @@ def create_model(
     """
     if tools not in TOOLS:
         raise ModelConfigError(f"There is no way {tools!r} to ask. Use one of {', '.join(TOOLS)}.")
-    local = create_local_model(uri)
+    local = create_local_model(uri, seed=seed)
     if local is not None:
         return local
     check_remote_uri(uri)
-    return _remote_model(uri, retry, tools, several_calls=several_calls, cache=cache)
+    return _remote_model(uri, retry, tools, several_calls=several_calls, cache=cache, seed=seed)
 
 
 def check_remote_uri(uri: str) -> None:
@@ -78,8 +81,13 @@ def check_remote_uri(uri: str) -> None:
         raise ModelConfigError(f"Unknown model {uri!r}. Known: {KNOWN}.")
 
 
-def create_local_model(uri: str) -> Model | None:
-    """Make a model that needs no server; None if the URI is not that of one."""
+def create_local_model(uri: str, *, seed: int = 0) -> Model | None:
+    """Make a model that needs no server; None if the URI is not that of one.
+
+    Args:
+        uri: As for `create_model`.
+        seed: Of a model that draws lots, where its URI names none.
+    """
     prefix, _, rest = uri.partition(":")
     if uri in ("baseline", "baseline:ocr"):
         from adamo_vh.inference.baseline import BaselineModel
@@ -88,7 +96,7 @@ def create_local_model(uri: str) -> Model | None:
     if prefix == "random":
         from adamo_vh.inference.players.random import RandomModel
 
-        return RandomModel(_seed(uri, rest))
+        return RandomModel(_seed(uri, rest) if rest else seed)
     if prefix == "scripted" and rest:
         from adamo_vh.inference.players.scripted import ScriptedModel, load_script
 
@@ -102,13 +110,19 @@ def create_local_model(uri: str) -> Model | None:
 
 def _seed(uri: str, text: str) -> int:
     try:
-        return int(text or "0")
+        return int(text)
     except ValueError:
         raise ModelConfigError(f"{uri}: the seed is a whole number, e.g. random:7.") from None
 
 
 def _remote_model(
-    uri: str, retry: RetryPolicy | None, tools: str, *, several_calls: bool, cache: bool
+    uri: str,
+    retry: RetryPolicy | None,
+    tools: str,
+    *,
+    several_calls: bool,
+    cache: bool,
+    seed: int,
 ) -> Model:
     from adamo_vh.inference.ladder import Ladder
     from adamo_vh.inference.remote.capabilities import load_capabilities
@@ -120,7 +134,7 @@ def _remote_model(
     if known is None and tools == AUTO:
         known = probe_and_keep(uri, retry)
     refused = known.refused if known else ()
-    model = ProviderModel(uri, retry, refused, several_calls=several_calls, cache=cache)
+    model = ProviderModel(uri, retry, refused, several_calls=several_calls, cache=cache, seed=seed)
     rung = known.rung if known and tools == AUTO else _RUNGS[tools]
     return Ladder(model, rung, known)
 

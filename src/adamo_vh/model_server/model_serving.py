@@ -82,7 +82,7 @@ def serve_model(
         try:
             shown = f"[{host}]" if ":" in host else host
             bound = opened.getsockname()[1]
-            yield ServedModel(player.name, f"http://{shown}:{bound}/v1")
+            yield ServedModel(player.info.name, f"http://{shown}:{bound}/v1")
         finally:
             stop()
 

@@ -71,7 +71,7 @@ def create_app(service: Service) -> FastAPI:
         service: What is served.
     """
     app = FastAPI(
-        title=f"ADAMO serves {service.model.name}",
+        title=f"ADAMO serves {service.model.info.name}",
         openapi_url=None,
         dependencies=[Depends(_only_from_here)],
     )
@@ -100,7 +100,7 @@ def create_app(service: Service) -> FastAPI:
 
     @app.get("/health")
     async def health() -> Json:
-        known = service.model
+        known = service.model.info
         return {"status": "ok", "model": known.name, "kind": known.kind, "tools": service.tools}
 
     return app
@@ -178,7 +178,7 @@ class _Endpoint:
         message = said if rule is None else spoiled(said, rule)
         if rule is None or not is_as_it_is(said, rule):
             message = toolless.written(message, given.form)
-        usage = estimated_usage(service.model.name, asked.messages, asked.tools, message)
+        usage = estimated_usage(service.model.info.name, asked.messages, asked.tools, message)
         return Answer(number, asked.model, message, usage)
 
     async def _asked(self, asked: ChatRequest, given: toolless.Conversation) -> AIMessage:
@@ -248,7 +248,7 @@ def _json(status: int, body: Json, headers: dict[str, str] | None = None) -> Res
 
 
 def _card(model: Model) -> Json:
-    return {"id": model.name, "object": "model", "created": 0, "owned_by": "adamo"}
+    return {"id": model.info.name, "object": "model", "created": 0, "owned_by": "adamo"}
 
 
 def _words(message: AIMessage, rule: Rule | None) -> str:

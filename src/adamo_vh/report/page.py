@@ -28,7 +28,6 @@ from adamo_vh.episode.result import (
 )
 from adamo_vh.files import write_whole
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.cost.tokens import is_estimated
 from adamo_vh.inference.model import Usage
 from adamo_vh.perception import Labeling
 from adamo_vh.record.termination import Limits, TerminationReason
@@ -200,7 +199,7 @@ def _account(thoughts: Sequence[Thought]) -> _Account:
     return _Account(
         sum((thought.usage for thought in thoughts), Usage()),
         total_cost(thoughts),
-        any(is_estimated(thought.settings) for thought in thoughts),
+        any(thought.usage.estimated for thought in thoughts),
         sum(thought.requests for thought in thoughts),
         tuple(sorted({thought.rung.value for thought in thoughts if thought.rung})),
         sum(bool(thought.unreadable) for thought in thoughts),

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from adamo_vh.cognition.guards import Guard
 from adamo_vh.episode.result import MANIFEST, EpisodeConfig, read_manifest, write_record
-from adamo_vh.inference.model import Model, close_model
-from adamo_vh.inference.players.cassette import FOLDER, Recorder
+from adamo_vh.inference.model import Model
+from adamo_vh.inference.players.cassette import FOLDER, taped
 from adamo_vh.observation import Frame
 from adamo_vh.record.trajectory import (
     Ended,
@@ -57,7 +57,7 @@ class ChatSession:
         """
         self.folder = folder
         with ExitStack() as stack:
-            stack.callback(close_model, model)
+            stack.callback(model.info.close)
             engine = create_engine(config.scene, config.figure)
             stack.callback(engine.close)
             engine.reset(config.seed)
@@ -66,7 +66,7 @@ class ChatSession:
             if known is None:
                 write_record(folder, MANIFEST, describe(config, model, engine))
             if record:
-                model = Recorder(model, folder / FOLDER)
+                model = taped(model, folder / FOLDER)
             before = known or ()
             later = [_FromThen(observer, len(before)) for observer in observers]
             heard: tuple[Observer, ...] = (writer, *later)
@@ -99,7 +99,9 @@ class ChatSession:
         """
         path = Path(folder)
         wish = config.profile
-        player = create_player(config.model, tools=config.tool_calls, profile=wish)
+        player = create_player(
+            config.model, tools=config.tool_calls, profile=wish, seed=config.seed
+        )
         config = replace(config, profile=fitting(wish, player))
         return cls(config, path, player, record=record, guards=guards, observers=observers)
 

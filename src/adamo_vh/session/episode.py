@@ -31,10 +31,9 @@ from adamo_vh.episode.result import (
     write_record,
 )
 from adamo_vh.errors import ConfigError, RecordError
-from adamo_vh.inference.model import Model, ModelKind, Sampling, close_model
-from adamo_vh.inference.players.cassette import FOLDER, Cassette, Recorder
-from adamo_vh.inference.players.resumed import Resumed
-from adamo_vh.inference.remote.capabilities import capabilities_of
+from adamo_vh.inference.model import Model, ModelKind, Sampling
+from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
+from adamo_vh.inference.players.resumed import resumed
 from adamo_vh.perception import Labeling, TextForm
 from adamo_vh.record.termination import Limits
 from adamo_vh.record.trajectory import (
@@ -129,7 +128,7 @@ def run_episode(
         scene=scene,
         figure=figure,
         labeling=member(Labeling, labeling, "labeling"),
-        model=model if isinstance(model, str) else model.name,
+        model=model if isinstance(model, str) else model.info.name,
         tool_calls=tool_calls,
         profile=chosen,
         seed=seed,
@@ -144,18 +143,18 @@ def run_episode(
     player: Model = (
         model
         if not isinstance(model, str)
-        else create_player(model, tools=tool_calls, profile=chosen)
+        else create_player(model, tools=tool_calls, profile=chosen, seed=seed)
     )
     config = replace(config, profile=fitting(chosen, player, tools))
     with ExitStack() as stack:
         if isinstance(model, str):
-            stack.callback(close_model, player)
+            stack.callback(player.info.close)
         world = engine or create_engine(config.scene, config.figure)
         if engine is None:
             stack.callback(world.close)
         world.reset(config.seed)
         manifest = describe(config, player, world)
-        is_asked = player.kind is ModelKind.VLM and not isinstance(player, Cassette)
+        is_asked = player.info.kind is ModelKind.VLM and not isinstance(player, Cassette)
         if announce is not None and is_asked:
             announce(forecast_episodes(config, world))
         kept = None
@@ -164,7 +163,7 @@ def run_episode(
             kept = (TrajectoryWriter(folder), folder)
             write_record(folder, MANIFEST, manifest)
             if record:
-                player = Recorder(player, folder / FOLDER)
+                player = taped(player, folder / FOLDER)
         return _play(manifest, player, world, kept, tools, (guards, observers))
 
 
@@ -179,8 +178,9 @@ def describe(config: EpisodeConfig, model: Model, engine: World) -> Manifest:
     """The manifest of an episode that is about to begin."""
     versions = {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}}
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    found = capabilities_of(model)
-    return Manifest(config, model.name, model.kind, versions, now, engine.state(), found)
+    who = model.info
+    state = engine.state()
+    return Manifest(config, who.name, who.kind, versions, now, state, who.capabilities)
 
 
 def create_agent(
@@ -286,7 +286,7 @@ def resume_episode(
     with ExitStack() as stack:
         player = resumed_player(path, manifest.config, recorded, model)
         if model is None:
-            stack.callback(close_model, player)
+            stack.callback(player.info.close)
         engine = create_engine(manifest.config.scene, manifest.config.figure)
         stack.callback(engine.close)
         engine.reset(manifest.config.seed)
@@ -300,8 +300,12 @@ def resumed_player(
     """A model that says again what was recorded, and then goes on live."""
     said = [thought.reply for thought in recorded.thoughts]
     live = model or create_player(
-        config.model, tools=config.tool_calls, profile=config.profile, answered=len(said)
+        config.model,
+        tools=config.tool_calls,
+        profile=config.profile,
+        answered=len(said),
+        seed=config.seed,
     )
     if (folder / FOLDER).is_dir():
-        live = Recorder(live, folder / FOLDER, known=len(said))
-    return Resumed(said, live)
+        live = taped(live, folder / FOLDER, known=len(said))
+    return resumed(said, live)

@@ -10,7 +10,7 @@ from adamo_vh.action_server.tools import INSPECT, SURVEY, Tool
 from adamo_vh.cognition.profile import PAPER, Profile, StateText
 from adamo_vh.inference.model import Model, ModelKind, Reply, Rung
 from adamo_vh.inference.players.cassette import Cassette
-from adamo_vh.inference.players.resumed import Resumed
+from adamo_vh.inference.players.resumed import resumed
 from adamo_vh.inference.players.scripted import ScriptedModel
 from adamo_vh.inference.registry import create_model
 from adamo_vh.record.trajectory import Trajectory, read_trajectory
@@ -19,7 +19,7 @@ _REPLAY = "replay:"
 
 
 def create_player(
-    uri: str, *, tools: str = "auto", profile: Profile = PAPER, answered: int = 0
+    uri: str, *, tools: str = "auto", profile: Profile = PAPER, answered: int = 0, seed: int = 0
 ) -> Model:
     """The model of a URI.
 
@@ -30,6 +30,7 @@ def create_player(
             cache of its prompt pays.
         answered: Replies that were given before an interruption; a model that answers from a list
             leaves them out.
+        seed: Seed of the episode.
 
     Raises:
         ModelConfigError: The model is unknown or lacks a key or an extra.
@@ -46,6 +47,7 @@ def create_player(
             # A state at the front changes with every action, and all behind it would be written
             # into the cache in vain.
             cache=profile.state is not StateText.FIRST,
+            seed=seed,
         )
     if isinstance(model, ScriptedModel | Cassette):
         model.skip(answered)
@@ -58,7 +60,7 @@ def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None)
     One that is asked for steps as text gives one a turn, and without the tools for close-ups there
     are none.
     """
-    if getattr(model, "rung", None) in (Rung.SCHEMA, Rung.REACT):
+    if model.info.rung in (Rung.SCHEMA, Rung.REACT):
         profile = replace(profile, plan=1)
     if tools is not None and not {INSPECT, SURVEY} <= set(tools):
         profile = replace(profile, closeups=False, min_confidence=0.0)
@@ -76,4 +78,4 @@ def recorded_model(trajectory: Trajectory, name: str, answered: int = 0) -> Mode
         )
         for thought in trajectory.thoughts[answered:]
     ]
-    return Resumed(said, ScriptedModel(name, (), kind=ModelKind.REPLAY))
+    return resumed(said, ScriptedModel(name, (), kind=ModelKind.REPLAY))

@@ -74,9 +74,9 @@ def test_without_the_extra_it_goes_on_and_says_so_once(monkeypatch):
     room.run()
     later = model.complete(room.messages(), TOOLS, Sampling()).message
     assert "adamo-vh[ocr]" not in later.text
-    assert BaselineModel(ocr=None).name == "baseline"
+    assert BaselineModel(ocr=None).info.name == "baseline"
 
 
 def test_the_name_tells_the_senses():
-    assert BaselineModel().name == "baseline"
-    assert BaselineModel(ocr=True).name == "baseline:ocr"
+    assert BaselineModel().info.name == "baseline"
+    assert BaselineModel(ocr=True).info.name == "baseline:ocr"

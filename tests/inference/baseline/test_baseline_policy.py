@@ -201,7 +201,7 @@ def test_every_call_is_valid():
 
 def test_it_is_a_rule_based_model():
     model = BaselineModel()
-    assert (model.name, model.kind) == ("baseline", ModelKind.RULE_BASED)
+    assert (model.info.name, model.info.kind) == ("baseline", ModelKind.RULE_BASED)
 
 
 def test_without_the_tool_it_ends():

@@ -19,13 +19,12 @@ from adamo_vh.inference.cost.tokens import (
     QWEN,
     QWEN_3,
     ImageRule,
-    Metered,
     estimate_image,
     estimate_message,
     estimate_reply,
     estimate_request,
     estimate_text,
-    is_estimated,
+    metered,
     rule_for,
 )
 from adamo_vh.inference.messages import (
@@ -38,7 +37,7 @@ from adamo_vh.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo_vh.inference.model import ModelKind, Reply, Sampling, Usage
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling, Usage
 from adamo_vh.inference.players.scripted import ScriptedModel
 
 RULES = (
@@ -235,7 +234,7 @@ def test_a_reply_is_its_note_and_its_calls() -> None:
 class Counting:
     """A model with tokens of its own."""
 
-    name, kind = "counting", ModelKind.VLM
+    info = ModelInfo("counting", ModelKind.VLM)
 
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
@@ -244,15 +243,13 @@ class Counting:
 
 
 def test_a_player_without_tokens_gets_an_estimate_that_is_marked() -> None:
-    model = Metered(ScriptedModel("scripted:x", [AIMessage("I see it.")]), QWEN)
+    model = metered(ScriptedModel("scripted:x", [AIMessage("I see it.")]), QWEN)
     reply = model.complete(PROMPT, TOOLS, Sampling())
-    assert (model.name, model.kind) == ("scripted:x", ModelKind.SCRIPTED)
-    assert reply.usage == Usage(estimate_request(PROMPT, TOOLS, QWEN), 4)
-    assert is_estimated(reply.settings)
+    assert (model.info.name, model.info.kind) == ("scripted:x", ModelKind.SCRIPTED)
+    assert reply.usage == Usage(estimate_request(PROMPT, TOOLS, QWEN), 4, estimated=True)
     assert reply.cost_usd is None
 
 
 def test_what_a_provider_counted_is_kept() -> None:
-    reply = Metered(Counting()).complete(PROMPT, TOOLS, Sampling())
+    reply = metered(Counting()).complete(PROMPT, TOOLS, Sampling())
     assert reply.usage == Usage(11, 2)
-    assert not is_estimated(reply.settings)

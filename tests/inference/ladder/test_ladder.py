@@ -23,7 +23,7 @@ from adamo_vh.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Rung, Sampling, Usage
 
 TOOLS = [tool_schema(action) for action in (Look, Walk, Pick, Drop, Survey)]
 FRAME = ImagePart(b"first", "image/jpeg", 1920, 1080)
@@ -69,13 +69,12 @@ def noted(tool: ToolSchema) -> ToolSchema:
 class Wire:
     """A model that says what it is given and keeps what it was asked."""
 
-    name, kind = "wire", ModelKind.VLM
+    info = ModelInfo("wire", ModelKind.VLM)
 
     def __init__(self, *said: str | Reply) -> None:
         self._said = [Reply(AIMessage(one)) if isinstance(one, str) else one for one in said]
         self.prompts: list[list[Message]] = []
         self.schemas: list[ToolSchema | None] = []
-        self.closed = False
 
     def complete(
         self,
@@ -89,9 +88,6 @@ class Wire:
         self.schemas.append(schema)
         self.tools = list(tools)
         return self._said.pop(0)
-
-    def close(self) -> None:
-        self.closed = True
 
 
 def ask(

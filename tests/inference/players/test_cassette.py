@@ -28,8 +28,8 @@ from adamo_vh.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo_vh.inference.model import Model, ModelKind, Reply, Rung, Sampling, Usage
-from adamo_vh.inference.players.cassette import CALLS, Cassette, Recorder
+from adamo_vh.inference.model import Model, ModelInfo, ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.inference.players.cassette import CALLS, Cassette, taped
 from adamo_vh.perception import Labeling
 from adamo_vh.record.trajectory import Ended, Trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
@@ -65,7 +65,7 @@ class Answering:
     """A model that answers from a list, with everything a reply can say."""
 
     def __init__(self, replies: Sequence[Reply] = REPLIES) -> None:
-        self.name, self.kind = "openai:gpt-4o", ModelKind.VLM
+        self.info = ModelInfo("openai:gpt-4o", ModelKind.VLM)
         self._replies = list(replies)
 
     def complete(
@@ -81,16 +81,16 @@ def ask(model: Model, messages: Sequence[Message] = FIRST) -> Reply:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A cassette of two calls."""
-    recorder = Recorder(Answering(), tmp_path / "tape")
+    recorder = taped(Answering(), tmp_path / "tape")
     assert (ask(recorder), ask(recorder, SECOND)) == REPLIES
-    assert (recorder.name, recorder.kind) == ("openai:gpt-4o", ModelKind.VLM)
+    assert (recorder.info.name, recorder.info.kind) == ("openai:gpt-4o", ModelKind.VLM)
     return tmp_path / "tape"
 
 
 def test_the_same_requests_get_the_same_replies(folder: Path) -> None:
     cassette = Cassette(folder)
-    assert (cassette.name, cassette.model) == (f"cassette:{folder}", "openai:gpt-4o")
-    assert (cassette.kind, len(cassette)) == (ModelKind.VLM, 2)
+    assert (cassette.info.name, cassette.model) == (f"cassette:{folder}", "openai:gpt-4o")
+    assert (cassette.info.kind, len(cassette)) == (ModelKind.VLM, 2)
     assert (ask(cassette), ask(cassette, SECOND)) == REPLIES
 
 
@@ -109,7 +109,7 @@ def test_a_picture_with_other_bytes_is_the_same_request(folder: Path) -> None:
 
 
 def test_every_call_is_on_disk_before_the_next(tmp_path: Path) -> None:
-    recorder = Recorder(Answering(), tmp_path)
+    recorder = taped(Answering(), tmp_path)
     for count, prompt in enumerate((FIRST, SECOND), start=1):
         ask(recorder, prompt)
         assert len(Cassette(tmp_path)) == count
@@ -159,7 +159,7 @@ def test_a_changed_prompt_names_the_message_and_shows_the_difference(
     with pytest.raises(CassetteError) as error:
         ask(cassette, messages)
     text = str(error.value)
-    assert all(part in text for part in [f"{cassette.name}, call 2: ", *parts]), text
+    assert all(part in text for part in [f"{cassette.info.name}, call 2: ", *parts]), text
 
 
 def test_tools_and_settings_belong_to_the_request(folder: Path) -> None:
@@ -222,23 +222,23 @@ def test_what_is_no_cassette_is_an_error(tmp_path: Path) -> None:
 
 def test_a_recording_is_never_mixed_with_another(folder: Path) -> None:
     with pytest.raises(RecordError, match="already holds a cassette"):
-        Recorder(Answering(), folder)
+        taped(Answering(), folder)
 
 
 def test_a_resumed_recording_goes_on_behind_what_was_answered(folder: Path) -> None:
     with (folder / CALLS).open("ab") as file:
         file.write(b'{"number": 3, "half')
-    recorder = Recorder(Answering(REPLIES[1:]), folder, known=1)
+    recorder = taped(Answering(REPLIES[1:]), folder, known=1)
     ask(recorder, SECOND)
     cassette = Cassette(folder)
     assert len(cassette) == 2
     assert (ask(cassette), ask(cassette, SECOND)) == REPLIES
     with pytest.raises(RecordError, match="holds 2 calls, and 5 were answered"):
-        Recorder(Answering(), folder, known=5)
+        taped(Answering(), folder, known=5)
     stranger = Answering()
-    stranger.name = "openai:other"
+    stranger.info = ModelInfo("openai:other", ModelKind.VLM)
     with pytest.raises(RecordError, match="is a cassette of openai:gpt-4o, not of openai:other"):
-        Recorder(stranger, folder, known=1)
+        taped(stranger, folder, known=1)
 
 
 def test_keys_are_not_recorded_and_do_not_matter_to_the_replay(
@@ -247,7 +247,7 @@ def test_keys_are_not_recorded_and_do_not_matter_to_the_replay(
     monkeypatch.setenv("SECRET_TOKEN", "hunter2hunter2")
     prompt = (SystemMessage("Do not say hunter2hunter2."),)
     call = ToolCall("c", "Pick", {"object": "hunter2hunter2"}, '{"object": "hunter2hunter2"}')
-    ask(Recorder(Answering([Reply(AIMessage("hunter2hunter2", (call,)))]), tmp_path), prompt)
+    ask(taped(Answering([Reply(AIMessage("hunter2hunter2", (call,)))]), tmp_path), prompt)
     assert "hunter2" not in (tmp_path / CALLS).read_text()
     reply = ask(Cassette(tmp_path), prompt)
     assert reply.message.calls[0].arguments == {"object": "[key]"}
@@ -262,7 +262,7 @@ def test_a_key_that_only_the_second_machine_has_changes_nothing(
 
 def test_text_that_cannot_be_encoded_does_not_stop_a_recording(tmp_path: Path) -> None:
     prompt = (SystemMessage("lone \ud800 half"),)
-    ask(Recorder(Answering(), tmp_path), prompt)
+    ask(taped(Answering(), tmp_path), prompt)
     assert ask(Cassette(tmp_path), prompt) == REPLIES[0]
 
 
@@ -288,7 +288,7 @@ def test_a_whole_episode_runs_again_from_its_cassette(
     engine: BuiltinEngine, tmp_path: Path
 ) -> None:
     instruction = "Pick the plate and place it on the floor"
-    ended, recorded = play(engine, Recorder(BaselineModel(), tmp_path), instruction)
+    ended, recorded = play(engine, taped(BaselineModel(), tmp_path), instruction)
     cassette = Cassette(tmp_path)
     again, replayed = play(engine, cassette, instruction)
     assert (again.reason, again.answer, again.state_hash) == (
@@ -299,13 +299,13 @@ def test_a_whole_episode_runs_again_from_its_cassette(
     assert [act.state_hash for act in replayed.acts] == [act.state_hash for act in recorded.acts]
     assert [turn.note for turn in replayed.thoughts] == [turn.note for turn in recorded.thoughts]
     assert len(cassette) == len(recorded.thoughts) > 2
-    assert cassette.kind is ModelKind.RULE_BASED
+    assert cassette.info.kind is ModelKind.RULE_BASED
 
 
 def test_another_instruction_ends_the_replay_with_what_differs(
     engine: BuiltinEngine, tmp_path: Path
 ) -> None:
-    play(engine, Recorder(BaselineModel(), tmp_path), "Pick the plate")
+    play(engine, taped(BaselineModel(), tmp_path), "Pick the plate")
     ended, _ = play(engine, Cassette(tmp_path), "Pick the glass")
     assert not ended.reason.is_scored
     for part in ("call 1: message", "(human) differs", "-Pick the plate", "+Pick the glass"):
@@ -313,6 +313,6 @@ def test_another_instruction_ends_the_replay_with_what_differs(
 
 
 def test_a_cassette_is_found_in_its_run_folder_and_knows_how_it_was_asked(tmp_path: Path) -> None:
-    ask(Recorder(Answering(), tmp_path / "cassette"))
+    ask(taped(Answering(), tmp_path / "cassette"))
     cassette = Cassette(tmp_path)
-    assert (len(cassette), cassette.rung) == (1, Rung.NATIVE)
+    assert (len(cassette), cassette.info.rung) == (1, Rung.NATIVE)

@@ -27,8 +27,8 @@ def draw(messages: list[Message], seed: int, tools=TOOLS) -> AIMessage:
 
 
 def test_its_name_is_its_uri():
-    assert (RandomModel().name, RandomModel(7).name) == ("random", "random:7")
-    assert RandomModel().kind is ModelKind.RANDOM
+    assert (RandomModel().info.name, RandomModel(7).info.name) == ("random", "random:7")
+    assert RandomModel().info.kind is ModelKind.RANDOM
 
 
 def test_seed_and_messages_decide():

@@ -44,8 +44,8 @@ def test_a_script_answers_in_order_and_then_finishes(tmp_path: Path) -> None:
 def test_a_script_is_named_after_its_uri_and_never_passes_for_a_vlm(tmp_path: Path) -> None:
     path = script(tmp_path, [PICK])
     model = create_model(f"scripted:{path}")
-    assert model.name == f"scripted:{path}"
-    assert model.kind is ModelKind.SCRIPTED
+    assert model.info.name == f"scripted:{path}"
+    assert model.info.kind is ModelKind.SCRIPTED
 
 
 def test_the_same_file_gives_the_same_messages(tmp_path: Path) -> None:
@@ -56,7 +56,7 @@ def test_the_same_file_gives_the_same_messages(tmp_path: Path) -> None:
 def test_recorded_messages_replay_unchanged() -> None:
     recorded = (AIMessage("n", (ToolCall("x9", "Look", None, "{oops"),)), AIMessage("Done."))
     model = ScriptedModel("replay:runs/7", recorded, ModelKind.REPLAY)
-    assert model.kind is ModelKind.REPLAY
+    assert model.info.kind is ModelKind.REPLAY
     assert [model.complete((), (), Sampling()).message for _ in recorded] == list(recorded)
 
 

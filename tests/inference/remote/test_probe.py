@@ -18,7 +18,6 @@ from adamo_vh.inference.remote.capabilities import (
     Capabilities,
     Support,
     ToolSupport,
-    capabilities_of,
     load_capabilities,
     save_capabilities,
 )
@@ -104,11 +103,11 @@ def test_refused_parameters_are_found_and_no_longer_sent() -> None:
 
     with FakeProvider(picky) as server:
         model = create_model(server.uri(), QUICK)
-        found = capabilities_of(model)
+        found = model.info.capabilities
         assert found is not None
         assert found.refused == ("temperature",)
         again = create_model(server.uri(), QUICK)
-        assert isinstance(again, Ladder) and again.capabilities == found
+        assert isinstance(again, Ladder) and again.info.capabilities == found
         before = len(server.requests)
         again.complete([HumanMessage((TextPart("Hi"),))], [], Sampling())
         assert len(server.requests) == before + 1
@@ -163,8 +162,8 @@ def test_what_was_found_is_kept_for_the_next_time() -> None:
         second = create_model(server.uri(), QUICK)
     assert len(brain.asked) == asked
     assert isinstance(first, Ladder) and isinstance(second, Ladder)
-    assert first.rung is second.rung is Rung.SCHEMA
-    assert first.capabilities == second.capabilities == load_capabilities(server.uri())
+    assert first.info.rung is second.info.rung is Rung.SCHEMA
+    assert first.info.capabilities == second.info.capabilities == load_capabilities(server.uri())
 
 
 @pytest.mark.parametrize(
@@ -173,7 +172,7 @@ def test_what_was_found_is_kept_for_the_next_time() -> None:
 def test_a_way_that_is_named_is_taken_without_a_probe(tools: str, rung: Rung) -> None:
     model = create_model("openai:tiny@http://127.0.0.1:9/v1", tools=tools)
     assert isinstance(model, Ladder)
-    assert (model.rung, model.capabilities) == (rung, None)
+    assert (model.info.rung, model.info.capabilities) == (rung, None)
 
 
 def test_an_unknown_way_is_refused_with_a_list() -> None:

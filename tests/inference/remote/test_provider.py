@@ -267,7 +267,8 @@ def test_the_key_goes_to_the_server_and_nowhere_else(
     trace = "".join(traceback.format_exception(caught.value))
     captured = capfd.readouterr()
     assert any(record.name.startswith("openai") for record in caplog.records)
-    shown = (repr(model), str(model), model.name, trace, caplog.text, captured.out, captured.err)
+    shown = [repr(model), str(model), str(model.info), trace]
+    shown += [caplog.text, captured.out, captured.err]
     assert not any(KEY in text for text in shown)
     assert caught.value.__cause__ is None
     assert caught.value.__context__ is None
@@ -282,5 +283,5 @@ def test_a_masked_key_in_a_server_message_is_blacked_out() -> None:
 
 def test_it_is_a_vlm_and_shows_only_its_name() -> None:
     model = ProviderModel("openai:tiny@http://127.0.0.1:9/v1")
-    assert model.kind is ModelKind.VLM
+    assert model.info.kind is ModelKind.VLM
     assert repr(model) == "ProviderModel('openai:tiny@http://127.0.0.1:9/v1')"

@@ -246,3 +246,26 @@ def test_anthropic_is_asked_for_a_cache_on_demand(cache: bool) -> None:
     ):
         model.complete(ASK, TOOLS, Sampling())
         assert ("cache_control" in str(server.requests[0])) is cache
+
+
+@every_wire
+def test_the_seed_goes_where_the_api_has_a_place_for_it(dialect: Dialect) -> None:
+    with (
+        FakeProvider([dialect.answer("ok")]) as server,
+        ProviderModel(uri(dialect, server), QUICK, seed=7) as model,
+    ):
+        reply = model.complete(ASK, TOOLS, Sampling())
+        arrived = dialect.settings(server.requests[0]).get("seed")
+    assert arrived == reply.settings.get("seed")
+    assert arrived == (7 if dialect.name in ("openai-chat", "google") else None)
+
+
+def test_a_refused_seed_is_left_out() -> None:
+    def answer(request: Json) -> Canned:
+        refused = "seed" in request
+        return Chat().error(400, "Unknown parameter: 'seed'.") if refused else Chat().answer("ok")
+
+    with FakeProvider(answer) as server, ProviderModel(server.uri(), QUICK, seed=7) as model:
+        reply = model.complete(ASK, TOOLS, Sampling())
+        assert len(server.requests) == 2
+    assert "seed" not in reply.settings and model.refused == {"seed"}

@@ -13,7 +13,7 @@ from adamo_vh.inference.baseline.prompt.reading import read_prompt
 from adamo_vh.inference.baseline.prompt.speaking import manner_of, say
 from adamo_vh.inference.baseline.sight.printed import MISSING, PrintReader, installed
 from adamo_vh.inference.messages import Message
-from adamo_vh.inference.model import ModelKind, Reply, Sampling
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling
 
 
 class BaselineModel:
@@ -36,14 +36,9 @@ class BaselineModel:
         self._remark = MISSING if wanted and not installed() else ""
 
     @property
-    def name(self) -> str:
-        """As in its URI."""
-        return self._name
-
-    @property
-    def kind(self) -> ModelKind:
+    def info(self) -> ModelInfo:
         """No learned weights: reports keep it apart from VLMs."""
-        return ModelKind.RULE_BASED
+        return ModelInfo(self._name, ModelKind.RULE_BASED)
 
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling

@@ -6,9 +6,8 @@ For forecasts, for comparing profiles offline, and for players that have no toke
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.arguments import dump_arguments
@@ -36,12 +35,12 @@ from adamo_vh.inference.messages import (
     TextPart,
     ToolMessage,
 )
-from adamo_vh.inference.model import Model, ModelKind, Reply, Sampling, Usage, close_model
+from adamo_vh.inference.model import Model, Reply, Sampling, Usage
+from adamo_vh.inference.players.wrapper import Ask, Wrapped
 
 __all__ = [
     "ANTHROPIC",
     "ANTHROPIC_HIGH",
-    "ESTIMATED",
     "GEMINI",
     "GEMINI_3",
     "OPENAI_PATCHES",
@@ -49,14 +48,14 @@ __all__ = [
     "QWEN",
     "QWEN_3",
     "ImageRule",
-    "Metered",
     "estimate_image",
     "estimate_message",
     "estimate_reply",
     "estimate_request",
     "estimate_text",
     "estimate_tools",
-    "is_estimated",
+    "filled_usage",
+    "metered",
     "rule_for",
 ]
 
@@ -69,9 +68,6 @@ FUNCTION_START, PROPERTIES_START, PER_PROPERTY, FUNCTIONS_END = 7, 3, 3, 12
 tiktoken", section 7)."""
 PER_CALL = 4
 """Signs around a tool call: that it is one, its name's end, its arguments' start and end."""
-
-ESTIMATED = ("usage", "estimated")
-"""What `Reply.settings` say about a usage that no provider counted."""
 
 
 def estimate_request(
@@ -132,48 +128,48 @@ def estimate_reply(message: AIMessage) -> int:
     return sum(map(estimate_text, _texts(message))) + len(message.calls) * PER_CALL
 
 
-def is_estimated(settings: Mapping[str, Any]) -> bool:
-    """Whether the settings of a reply say that its usage is an estimate."""
-    key, value = ESTIMATED
-    return bool(settings.get(key) == value)
-
-
-class Metered:
+def metered(model: Model, rule: ImageRule = OPENAI_TILES) -> Model:
     """A model whose tokens are estimated where it counts none of its own.
 
-    The oracle, scripts and the baseline have no tokenizer; with this their prompts can be compared
-    with those of a VLM. Such a usage is marked in `Reply.settings`.
+    Oracles, scripts and the baseline have no tokenizer; with this their prompts can be compared
+    with those of a VLM.
+
+    Args:
+        model: Who answers.
+        rule: How its pictures are counted.
     """
 
-    def __init__(self, model: Model, rule: ImageRule = OPENAI_TILES) -> None:
-        """Wrap a model; `rule` says how its pictures are counted."""
-        self._model = model
-        self._rule = rule
-
-    @property
-    def name(self) -> str:
-        """The model's name."""
-        return self._model.name
-
-    @property
-    def kind(self) -> ModelKind:
-        """The model's kind."""
-        return self._model.kind
-
-    def complete(
-        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+    def counted(
+        ask: Ask, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
     ) -> Reply:
-        """Answer, with an estimated usage if the model gives none."""
-        reply = self._model.complete(messages, tools, sampling)
-        if reply.usage != Usage():
-            return reply
-        usage = Usage(estimate_request(messages, tools, self._rule), estimate_reply(reply.message))
-        key, value = ESTIMATED
-        return replace(reply, usage=usage, settings={**reply.settings, key: value})
+        reply = ask(messages, tools, sampling)
+        usage = filled_usage(reply.usage, messages, tools, reply.message, rule)
+        return replace(reply, usage=usage)
 
-    def close(self) -> None:
-        """Close the model's connections, if it has any."""
-        close_model(self._model)
+    return Wrapped(model, counted)
+
+
+def filled_usage(
+    usage: Usage,
+    messages: Iterable[Message],
+    tools: Iterable[ToolSchema],
+    reply: AIMessage,
+    rule: ImageRule,
+) -> Usage:
+    """A usage with estimates in place of what was not counted: no prompt has 0 tokens.
+
+    Args:
+        usage: As counted.
+        messages: The prompt.
+        tools: The tools on offer.
+        reply: The answer.
+        rule: How pictures are counted.
+    """
+    read = usage.input_tokens or estimate_request(messages, tools, rule)
+    said = usage.output_tokens or estimate_reply(reply)
+    if (read, said) == (usage.input_tokens, usage.output_tokens):
+        return usage
+    return replace(usage, input_tokens=read, output_tokens=said, estimated=True)
 
 
 def _texts(message: Message) -> Iterator[str]:

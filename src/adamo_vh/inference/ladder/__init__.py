@@ -25,7 +25,7 @@ from adamo_vh.inference.ladder.steps import (
     takes_note,
 )
 from adamo_vh.inference.messages import AIMessage, HumanMessage, Message, TextPart, ToolCall
-from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling
+from adamo_vh.inference.model import ModelInfo, Reply, Rung, Sampling
 from adamo_vh.inference.prompts import render
 from adamo_vh.inference.remote.capabilities import Capabilities
 from adamo_vh.inference.text_calls import fresh_id, recognise_call
@@ -42,13 +42,8 @@ class Provider(Protocol):
     """A model on a wire, which can be held to a schema instead of being offered tools."""
 
     @property
-    def name(self) -> str:
-        """As in the URI that made it."""
-        ...
-
-    @property
-    def kind(self) -> ModelKind:
-        """What kind of player it is."""
+    def info(self) -> ModelInfo:
+        """What there is to know about it."""
         ...
 
     def complete(
@@ -60,10 +55,6 @@ class Provider(Protocol):
         schema: ToolSchema | None = None,
     ) -> Reply:
         """Answer; with a schema, in JSON that obeys it."""
-        ...
-
-    def close(self) -> None:
-        """Close the connections."""
         ...
 
 
@@ -87,31 +78,12 @@ class Ladder:
 
     def __repr__(self) -> str:
         """The name and the rung."""
-        return f"Ladder({self.name!r}, {self._rung.value!r})"
+        return f"Ladder({self.info.name!r}, {self._rung.value!r})"
 
     @property
-    def name(self) -> str:
-        """The model's name."""
-        return self._inner.name
-
-    @property
-    def kind(self) -> ModelKind:
-        """The model's kind."""
-        return self._inner.kind
-
-    @property
-    def rung(self) -> Rung:
-        """How the model is asked."""
-        return self._rung
-
-    @property
-    def capabilities(self) -> Capabilities | None:
-        """What a probe found out about the model; None if it was not probed."""
-        return self._capabilities
-
-    def close(self) -> None:
-        """Close the connections."""
-        self._inner.close()
+    def info(self) -> ModelInfo:
+        """The model's, with its rung and what a probe found out."""
+        return replace(self._inner.info, rung=self._rung, capabilities=self._capabilities)
 
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling

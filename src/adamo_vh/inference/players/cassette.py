@@ -7,6 +7,7 @@ call a line, each written at once, so that a kill loses at most the line in flig
 from __future__ import annotations
 
 import difflib
+import itertools
 import json
 from collections.abc import Sequence
 from itertools import zip_longest
@@ -19,8 +20,9 @@ from adamo_vh.errors import CassetteError, FileError, RecordError
 from adamo_vh.files import append_line, read_json, write_whole
 from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.messages import Message
-from adamo_vh.inference.model import Model, ModelKind, Reply, Rung, Sampling, close_model
+from adamo_vh.inference.model import Model, ModelInfo, ModelKind, Reply, Sampling
 from adamo_vh.inference.players.calls import Call, Request, clean_reply, codec, request_of, sections
+from adamo_vh.inference.players.wrapper import Ask, Wrapped
 
 LABEL, CALLS = "cassette.json", "calls.jsonl"
 FOLDER = "cassette"
@@ -33,78 +35,64 @@ _FIX = (
 )
 
 
-class Recorder:
+def taped(model: Model, folder: str | Path, *, known: int | None = None) -> Model:
     """A model whose every call is written into a folder.
 
-    Keys are blacked out, and pictures are kept as hash and size.
+    Keys are blacked out, and pictures are stored as hash and size.
+
+    Args:
+        model: Who answers.
+        folder: Is made if it is missing.
+        known: Go on with the cassette that is there, behind so many calls; a later one, whose
+            answer was lost to a kill, is taken off and will be asked for again.
+
+    Raises:
+        RecordError: The folder holds calls already; or, when it is resumed, calls of another
+            model or too few.
     """
+    path, numbers = Path(folder) / CALLS, itertools.count((known or 0) + 1)
+    if known is not None and path.exists():
+        _keep_first(path, known, model.info)
+    elif known:
+        raise RecordError(f"{folder} holds no cassette to go on with.")
+    else:
+        _begin(path, model.info)
 
-    def __init__(self, model: Model, folder: str | Path, *, known: int | None = None) -> None:
-        """Open a cassette.
-
-        Args:
-            model: Who answers.
-            folder: Is made if it is missing.
-            known: Go on with the cassette that is there, behind so many calls; a later one, whose
-                answer was lost to a kill, is taken off and will be asked for again.
-
-        Raises:
-            RecordError: The folder holds calls already; or, when it is resumed, calls of another
-                model or too few.
-        """
-        self._model = model
-        self._path = Path(folder) / CALLS
-        self._count = known or 0
-        if known is not None and self._path.exists():
-            self._cut(known)
-            return
-        if self._path.exists():
-            raise RecordError(f"{folder} already holds a cassette; choose another folder.")
-        if self._count:
-            raise RecordError(f"{folder} holds no cassette to go on with.")
-        label = {"version": _VERSION, "model": model.name, "kind": model.kind}
-        write_whole(self._path.parent / LABEL, json.dumps(label).encode() + b"\n")
-
-    def _cut(self, count: int) -> None:
-        """Keep the first calls alone."""
-        folder = self._path.parent
-        recorded = _read_label(folder)
-        if recorded != (self._model.name, self._model.kind):
-            raise RecordError(
-                f"{folder} is a cassette of {recorded[0]}, not of {self.name}; go on with that "
-                "model."
-            )
-        lines = _whole_lines(self._path).splitlines(keepends=True)
-        if len(lines) < count:
-            raise RecordError(
-                f"{folder} holds {len(lines)} calls, and {count} were answered. Delete it to go "
-                "on without a recording."
-            )
-        write_whole(self._path, b"".join(lines[:count]))
-
-    @property
-    def name(self) -> str:
-        """The model's name."""
-        return self._model.name
-
-    @property
-    def kind(self) -> ModelKind:
-        """The model's kind."""
-        return self._model.kind
-
-    def complete(
-        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+    def write(
+        ask: Ask, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
     ) -> Reply:
-        """Ask the model and write down what was said."""
-        reply = self._model.complete(messages, tools, sampling)
-        self._count += 1
-        call = Call(self._count, request_of(messages, tools, sampling), clean_reply(reply))
-        append_line(self._path, codec().dump_json(call))
+        reply = ask(messages, tools, sampling)
+        call = Call(next(numbers), request_of(messages, tools, sampling), clean_reply(reply))
+        append_line(path, codec().dump_json(call))
         return reply
 
-    def close(self) -> None:
-        """Close the model's connections, if it has any."""
-        close_model(self._model)
+    return Wrapped(model, write)
+
+
+def _begin(path: Path, who: ModelInfo) -> None:
+    """A new cassette."""
+    folder = path.parent
+    if path.exists():
+        raise RecordError(f"{folder} already holds a cassette; choose another folder.")
+    label = {"version": _VERSION, "model": who.name, "kind": who.kind}
+    write_whole(folder / LABEL, json.dumps(label).encode() + b"\n")
+
+
+def _keep_first(path: Path, count: int, who: ModelInfo) -> None:
+    """Leave the first calls alone in a cassette."""
+    folder = path.parent
+    name, kind = _read_label(folder)
+    if (name, kind) != (who.name, who.kind):
+        raise RecordError(
+            f"{folder} is a cassette of {name}, not of {who.name}; go on with that model."
+        )
+    lines = _whole_lines(path).splitlines(keepends=True)
+    if len(lines) < count:
+        raise RecordError(
+            f"{folder} holds {len(lines)} calls, and {count} were answered. Delete it to go "
+            "on without a recording."
+        )
+    write_whole(path, b"".join(lines[:count]))
 
 
 class Cassette:
@@ -126,24 +114,15 @@ class Cassette:
         self._next = 0
 
     @property
-    def name(self) -> str:
-        """``cassette:`` and the folder."""
-        return f"cassette:{self._folder}"
+    def info(self) -> ModelInfo:
+        """Kind and rung of the recorded model, under the name of the cassette."""
+        rung = self._calls[0].reply.rung if self._calls else None
+        return ModelInfo(f"cassette:{self._folder}", self._kind, rung)
 
     @property
     def model(self) -> str:
         """Name of the model that was recorded."""
         return self._model
-
-    @property
-    def kind(self) -> ModelKind:
-        """Kind of the model that was recorded."""
-        return self._kind
-
-    @property
-    def rung(self) -> Rung | None:
-        """How the recorded model was asked; None if it had no wire."""
-        return self._calls[0].reply.rung if self._calls else None
 
     def __len__(self) -> int:
         """How many calls it holds."""
@@ -164,8 +143,8 @@ class Cassette:
         """
         if self._next >= len(self._calls):
             raise CassetteError(
-                f"{self.name} has {len(self._calls)} calls, and call {self._next + 1} is asked "
-                "for. The episode went on longer than when it was recorded; record it again."
+                f"{self.info.name} has {len(self._calls)} calls, and call {self._next + 1} is "
+                "asked for. The episode went on longer than when it was recorded; record it again."
             )
         call = self._calls[self._next]
         # A key may be in the environment of only one of the two machines.
@@ -173,7 +152,7 @@ class Cassette:
         if sections(asked) != sections(call.request):
             plain = request_of(messages, tools, sampling, clean=encodable_text)
             if sections(plain) != sections(call.request):
-                raise CassetteError(f"{self.name}, {_difference(call, asked)}")
+                raise CassetteError(f"{self.info.name}, {_difference(call, asked)}")
         self._next += 1
         return call.reply
 

@@ -19,7 +19,7 @@ from adamo_vh.inference.messages import (
     ToolCall,
     ToolMessage,
 )
-from adamo_vh.inference.model import ModelKind, Reply, Sampling
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling
 
 END_CHANCE = 0.05
 """Probability of ending the episode instead of a further call, from the second turn on: 20 calls
@@ -47,14 +47,10 @@ class RandomModel:
         self._seed = seed
 
     @property
-    def name(self) -> str:
-        """As in its URI."""
-        return f"random:{self._seed}" if self._seed else "random"
-
-    @property
-    def kind(self) -> ModelKind:
+    def info(self) -> ModelInfo:
         """No player at all: reports keep it apart."""
-        return ModelKind.RANDOM
+        name = f"random:{self._seed}" if self._seed else "random"
+        return ModelInfo(name, ModelKind.RANDOM)
 
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling

@@ -11,7 +11,7 @@ from adamo_vh.action import ToolSchema
 from adamo_vh.errors import ConfigError, FileError
 from adamo_vh.files import read_json
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
-from adamo_vh.inference.model import ModelKind, Reply, Sampling
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling
 
 FINISHED = "The script is finished."
 """Final answer after the last reply of a script."""
@@ -42,14 +42,9 @@ class ScriptedModel:
         self._next = 0
 
     @property
-    def name(self) -> str:
-        """As in the URI that made it."""
-        return self._name
-
-    @property
-    def kind(self) -> ModelKind:
+    def info(self) -> ModelInfo:
         """Scripted or replay."""
-        return self._kind
+        return ModelInfo(self._name, self._kind)
 
     def skip(self, count: int) -> None:
         """Leave out the next replies: they were given before an interruption."""

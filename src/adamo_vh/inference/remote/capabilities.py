@@ -67,12 +67,6 @@ class Capabilities:
     """Date and time of the probe, ISO 8601, UTC."""
 
 
-def capabilities_of(model: object) -> Capabilities | None:
-    """What is known about a model; None if it was not probed or has no wire."""
-    found = getattr(model, "capabilities", None)
-    return found if isinstance(found, Capabilities) else None
-
-
 def load_capabilities(uri: str) -> Capabilities | None:
     """What an earlier probe found out, if this version of the package made one.
 

@@ -145,6 +145,7 @@ def sent_settings(body: Mapping[str, Any]) -> dict[str, Any]:
         ("top_p", ("top_p", "topP")),
         ("max_tokens", _TOKEN_LIMITS),
         ("parallel_tool_calls", ("parallel_tool_calls",)),
+        ("seed", ("seed",)),
         ("reasoning", ("reasoning", "reasoning_effort", "thinking", "thinkingConfig")),
     ):
         for spelling in spellings:

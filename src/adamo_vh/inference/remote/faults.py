@@ -183,6 +183,7 @@ _SPELLINGS = {
     "top_p": r"top_?p",
     "temperature": r"temperature",
     "parallel_tool_calls": r"parallel_tool_calls|disable_parallel_tool_use",
+    "seed": r"seed",
     "max_tokens": r"max_tokens|max_completion_tokens|max_?output_?tokens",
     SEVERAL_SYSTEM: r"system (?:message|role)",
 }

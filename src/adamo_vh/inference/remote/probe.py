@@ -69,7 +69,7 @@ def probe(uri: str, retry: RetryPolicy | None = None) -> Capabilities:
         ModelConfigError: The URI, the provider's package or its key is wrong or missing.
         ModelError: The model cannot be reached; names the fix.
     """
-    model = ProviderModel(uri, retry or PROBE_RETRY)
+    model = ProviderModel(uri, retry or PROBE_RETRY, seed=0)
     try:
         return _Probe(model).run(model)
     finally:
@@ -88,7 +88,7 @@ class _Probe:
     def run(self, model: ProviderModel) -> Capabilities:
         """Ask everything, the most telling things first."""
         started = time.monotonic()
-        first, second = _colours(model.name)
+        first, second = _colours(model.info.name)
         pictures = self._sees_picture(first)
         tools, called = self._calls_tool()
         result_pictures = Support.UNTESTED
@@ -98,7 +98,7 @@ class _Probe:
         if tools is ToolSupport.REFUSED and schema is Support.REFUSED:
             self._must_answer()  # Else it was not these two that were refused.
         return Capabilities(
-            model.name,
+            model.info.name,
             _rung(tools, schema),
             tools,
             schema,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.cost.prices import cost_usd
 from adamo_vh.inference.messages import AIMessage, Message
-from adamo_vh.inference.model import ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Rung, Sampling, Usage
 from adamo_vh.inference.remote.background import run_in_background
 from adamo_vh.inference.remote.clients import Connection, connect
 from adamo_vh.inference.remote.endpoint import parse_endpoint
@@ -68,6 +68,7 @@ class ProviderModel:
         *,
         several_calls: bool = False,
         cache: bool = False,
+        seed: int | None = None,
     ) -> None:
         """Make the client; nothing is sent yet.
 
@@ -80,6 +81,7 @@ class ProviderModel:
             several_calls: Whether the model may call several tools in one turn.
             cache: Whether to ask for a prompt cache where it must be asked for and writing it
                 costs extra (Anthropic). Worth it if each prompt begins as the one before.
+            seed: Seed of the server's draws, sent where its API takes one.
 
         Raises:
             ModelConfigError: The URI, the provider's package or its key is wrong or missing.
@@ -93,7 +95,7 @@ class ProviderModel:
         self._http: httpx2.AsyncClient | None = None
         self._entered = False
         self._connection = self._connect()
-        self._settings = Settings(self._connection.wire, refused)
+        self._settings = Settings(self._connection.wire, refused, seed)
 
     def __repr__(self) -> str:
         """The name alone."""
@@ -111,14 +113,9 @@ class ProviderModel:
         self.close()
 
     @property
-    def name(self) -> str:
-        """As in the URI that made it."""
-        return self._name
-
-    @property
-    def kind(self) -> ModelKind:
-        """Always a VLM."""
-        return ModelKind.VLM
+    def info(self) -> ModelInfo:
+        """A VLM, as in the URI that made it."""
+        return ModelInfo(self._name, ModelKind.VLM, close=self.close)
 
     @property
     def wire(self) -> str:

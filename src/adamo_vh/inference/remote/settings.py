@@ -13,19 +13,24 @@ from adamo_vh.inference.remote.faults import SEVERAL_SYSTEM, refused_setting
 EXACT = ("temperature", "top_p")
 """Settings that `Sampling.exact` insists on."""
 
+_SEEDED = ("openai-chat", "google")
+"""Wires whose requests have a place for a seed."""
+
 _OLD_LIMIT, _NEW_LIMIT = "max_tokens", "max_completion_tokens"
 
 
 class Settings:
     """The settings of one model's requests, and what its server has refused so far."""
 
-    def __init__(self, wire: str, refused: Iterable[str] = ()) -> None:
+    def __init__(self, wire: str, refused: Iterable[str] = (), seed: int | None = None) -> None:
         """Take over what is known already.
 
         Args:
             wire: Shape of the requests; see `Connection.wire`.
             refused: Parameters that the server is known to refuse.
+            seed: Seed of the draws; None to send none.
         """
+        self._seed = seed if wire in _SEEDED else None
         self._has_new_limit = wire == "openai-chat"
         self._refused = frozenset(refused)
         self._lock = Lock()
@@ -50,6 +55,8 @@ class Settings:
             "top_p": sampling.top_p,
             _OLD_LIMIT: sampling.max_tokens,
         }
+        if self._seed is not None:
+            wanted["seed"] = self._seed
         if with_tools:
             wanted["parallel_tool_calls"] = several_calls
         if sampling.temperature == 0.0 == sampling.top_p and not sampling.exact:
