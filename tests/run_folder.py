@@ -15,18 +15,12 @@ from tests.tabletop import carried_out, tabletop
 from adamo_vh.action import Code, Drop, Feedback, Look, Outcome, Pick, Walk
 from adamo_vh.benchmark.tasks import task
 from adamo_vh.engine import WorldState
-from adamo_vh.episode.result import (
-    MANIFEST,
-    RESULT,
-    EpisodeConfig,
-    Manifest,
-    summarise,
-    write_record,
-)
+from adamo_vh.episode.result import EpisodeConfig, Manifest, summarise, write_record
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.inference.messages import ToolCall
 from adamo_vh.inference.model import ModelKind, Usage
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
+from adamo_vh.record.run_folder import MANIFEST, RESULT
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import (
     Acted,
@@ -34,10 +28,10 @@ from adamo_vh.record.trajectory import (
     LeftOut,
     Started,
     Thought,
-    TrajectoryWriter,
     observed,
     read_trajectory,
 )
+from adamo_vh.record.writer import TrajectoryWriter
 
 Painter = Callable[[WorldState, Camera, Sequence[ObservedObject]], Image.Image]
 

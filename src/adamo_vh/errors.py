@@ -15,7 +15,7 @@
     │   │   └── RefusedError   the provider refuses the request as it is: no waiting helps
     │   └── CassetteError      the recorded calls do not fit what is asked now
     └── RecordError            a run folder is missing, damaged or of another version
-        └── ReplayError        a replay left the recorded path
+        └── FolderInUseError   somebody else writes the run folder now
 
 What a *model* does wrong (an unknown tool, an unseen tag) is never an exception above the agent:
 it becomes feedback and the loop goes on.
@@ -84,5 +84,5 @@ class RecordError(AdamoError):
     """A run folder is missing, damaged or of another version."""
 
 
-class ReplayError(RecordError):
-    """A replay left the recorded path."""
+class FolderInUseError(RecordError):
+    """Somebody else writes the run folder now; says who."""

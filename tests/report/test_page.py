@@ -16,22 +16,19 @@ from tests.run_folder import Recorder, config, played
 from tests.tabletop import tabletop
 
 from adamo_vh.action import Code, Feedback, Look, Outcome, Pick
-from adamo_vh.episode.result import (
-    MANIFEST,
-    write_record,
-)
+from adamo_vh.episode.result import write_record
 from adamo_vh.errors import RecordError
 from adamo_vh.geometry import Quaternion
 from adamo_vh.inference.messages import ToolCall
+from adamo_vh.record.run_folder import FRAMES, MANIFEST
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import (
-    FRAMES,
     Acted,
     Observed,
     Trajectory,
-    TrajectoryWriter,
     read_trajectory,
 )
+from adamo_vh.record.writer import TrajectoryWriter
 from adamo_vh.report.floor_plan import floor_plan
 from adamo_vh.report.page import PAGE, render_page, write_page
 from adamo_vh.report.timeline import CallText, turns

@@ -12,8 +12,9 @@ from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.profile import PROFILES
 from adamo_vh.episode.result import EpisodeConfig
 from adamo_vh.errors import RecordError
+from adamo_vh.record.run_folder import EVENTS
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.trajectory import EVENTS, Trajectory, read_trajectory
+from adamo_vh.record.trajectory import Trajectory, read_trajectory
 from adamo_vh.session.chat import ChatSession
 from adamo_vh.session.episode import run_episode
 from adamo_vh.session.replaying import replay_episode

@@ -17,8 +17,9 @@ import adamo_vh
 from adamo_vh.episode.result import read_manifest, read_result, summarise
 from adamo_vh.errors import ConfigError, RecordError
 from adamo_vh.inference.model import ModelKind
+from adamo_vh.record.run_folder import EVENTS, FRAMES
 from adamo_vh.record.termination import Limits, TerminationReason
-from adamo_vh.record.trajectory import EVENTS, FRAMES, read_trajectory
+from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
 
 SMALL = (480, 270)

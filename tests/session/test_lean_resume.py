@@ -14,12 +14,13 @@ from tests.cognition.test_lean_agent import Player, finish, noted, says
 import adamo_vh
 from adamo_vh.action import ToolSchema
 from adamo_vh.cognition.profile import PROFILES
-from adamo_vh.episode.result import RESULT, EpisodeConfig, read_result
+from adamo_vh.episode.result import EpisodeConfig, read_result
 from adamo_vh.errors import ProviderError, RecordError
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
 from adamo_vh.inference.model import Reply, Sampling
+from adamo_vh.record.run_folder import EVENTS, RESULT
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.trajectory import EVENTS, LeftOut, Trajectory, read_trajectory
+from adamo_vh.record.trajectory import LeftOut, Trajectory, read_trajectory
 from adamo_vh.session.chat import ChatSession
 
 SMALL = (480, 270)

@@ -20,7 +20,8 @@ from adamo_vh.inference.model import Model, Rung, Sampling
 from adamo_vh.inference.remote.provider import ProviderModel
 from adamo_vh.inference.remote.retry import RetryPolicy
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.trajectory import Ended, Event, TrajectoryWriter, read_trajectory, thought
+from adamo_vh.record.trajectory import Ended, Event, read_trajectory, thought
+from adamo_vh.record.writer import TrajectoryWriter
 
 every_wire = pytest.mark.parametrize("dialect", DIALECTS, ids=NAMES)
 SURROGATE = "\ud800"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
-from adamo_vh.cli.episode import new_run_folder
+from adamo_vh.cli.episode import run_folder
 from adamo_vh.cli.progress import Progress
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.episode.result import EpisodeConfig
@@ -32,25 +33,26 @@ def talk(
     console = Console()
     observers = (Progress(console),)
     guards = (BudgetGuard(Budget(), Ledger(), budget),)
-    if resume is not None:
-        console.print(f"Going back to where {resume} was left ...", style="dim")
-        session = ChatSession.resume(resume, guards=guards, observers=observers)
-        first = None
-    else:
-        first = _ask(console)
-        if first is None:
-            return
-        config = EpisodeConfig(
-            instruction=first,
-            labeling=member(Labeling, labeling, "labeling"),
-            profile=chosen_profile(profile, switches),
-            **settings,
-        )
-        folder = out or new_run_folder(first)
-        session = ChatSession.begin(
-            config, folder, record=record, guards=guards, observers=observers
-        )
-    with session:
+    with ExitStack() as stack:
+        if resume is not None:
+            console.print(f"Going back to where {resume} was left ...", style="dim")
+            session = ChatSession.resume(resume, guards=guards, observers=observers)
+            first = None
+        else:
+            first = _ask(console)
+            if first is None:
+                return
+            config = EpisodeConfig(
+                instruction=first,
+                labeling=member(Labeling, labeling, "labeling"),
+                profile=chosen_profile(profile, switches),
+                **settings,
+            )
+            folder = stack.enter_context(run_folder(out, first))
+            session = ChatSession.begin(
+                config, folder, record=record, guards=guards, observers=observers
+            )
+        stack.enter_context(session)
         said = first or _ask(console)
         while said is not None:
             _answer(console, session.say(said))

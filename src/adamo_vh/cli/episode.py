@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -20,6 +21,7 @@ from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.engine import World
 from adamo_vh.episode.result import EpisodeResult, to_json
 from adamo_vh.errors import ConfigError
+from adamo_vh.record.run_folder import MANIFEST, reserve
 from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.record.trajectory import Observer
 
@@ -39,8 +41,8 @@ def run_and_show(
     """Run an episode and print what happens, or one JSON object at the end."""
     from adamo_vh.session.episode import run_episode
 
-    folder = out or new_run_folder(settings["task"] or instruction or "")
     with ExitStack() as stack:
+        folder = stack.enter_context(run_folder(out, settings["task"] or instruction or ""))
         observers: list[Observer] = [] if as_json else [Progress(Console())]
         limits = Limits(max_steps=max_steps)
         if video is not None:
@@ -56,8 +58,6 @@ def run_and_show(
             announce=None if as_json else lambda ahead: _announce(ahead, settings["budget"]),
             **settings,
         )
-    if out is None:
-        _mark_latest(folder)
     _show(result, folder, as_json=as_json)
 
 
@@ -138,26 +138,41 @@ def parse_resolution(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
-def new_run_folder(what: str) -> Path:
-    """A folder name below runs/ that is not taken."""
+@contextmanager
+def run_folder(out: Path | None, what: str) -> Iterator[Path]:
+    """The folder of a run: what was asked for, or a new one below runs/ for this run alone.
+
+    Afterwards runs/latest points to it, if anything was recorded.
+
+    Args:
+        out: What was asked for.
+        what: What the run is about, in a few words.
+    """
+    folder = out or _new_run_folder(what)
+    try:
+        yield folder
+    finally:
+        if (folder / MANIFEST).is_file():
+            _mark_latest(folder)
+        elif out is None:
+            with suppress(OSError):
+                folder.rmdir()
+
+
+def _new_run_folder(what: str) -> Path:
     words = re.sub(r"[^a-z0-9]+", "-", what.lower()).strip("-")[:40].strip("-") or "episode"
     stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
-    folder = RUNS / f"{stamp}-{words}"
-    number = 2
-    while folder.exists():
-        folder = RUNS / f"{stamp}-{words}-{number}"
-        number += 1
-    return folder
+    return reserve(RUNS, f"{stamp}-{words}")
 
 
 def _mark_latest(folder: Path) -> None:
     """Point runs/latest at the newest run, where the file system allows it."""
-    link = RUNS / "latest"
-    try:
-        link.unlink(missing_ok=True)
-        link.symlink_to(folder.name, target_is_directory=True)
-    except OSError:
-        pass
+    half = RUNS / f"latest.{os.getpid()}.part"
+    with suppress(OSError):
+        RUNS.mkdir(exist_ok=True)
+        half.symlink_to(os.path.relpath(folder, RUNS), target_is_directory=True)
+        half.replace(RUNS / "latest")
+    half.unlink(missing_ok=True)
 
 
 def result_json(result: EpisodeResult) -> dict[str, Any]:

@@ -22,12 +22,11 @@ from adamo_vh.geometry import Vec3
 from adamo_vh.inference.model import ModelKind, Sampling, Usage
 from adamo_vh.inference.remote.capabilities import Capabilities
 from adamo_vh.perception import Labeling, TextForm
+from adamo_vh.record.run_folder import MANIFEST, RESULT, check_begun
 from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.record.trajectory import Thought, Trajectory
 
 FORMAT = 1
-MANIFEST = "manifest.json"
-RESULT = "result.json"
 _MOST_BYTES = 50_000_000
 _T = TypeVar("_T")
 
@@ -254,7 +253,15 @@ def read_manifest(folder: Path) -> Manifest:
     Raises:
         RecordError: The folder holds no run, or one of another version.
     """
-    return _read(folder / MANIFEST, Manifest)
+    check_begun(folder)
+    manifest = _read(folder / MANIFEST, Manifest)
+    if manifest.format != FORMAT:
+        raise RecordError(
+            f"{folder / MANIFEST}: the record has format {manifest.format}, and this version of "
+            f"ADAMO reads format {FORMAT}; use the version that wrote it "
+            f"({manifest.versions.get('adamo-vh', 'unknown')})."
+        )
+    return manifest
 
 
 def read_result(folder: Path) -> EpisodeResult | None:
@@ -268,8 +275,6 @@ def read_result(folder: Path) -> EpisodeResult | None:
 
 
 def _read(path: Path, record_type: type[_T]) -> _T:
-    if not path.is_file():
-        raise RecordError(f"{path.parent} is no run folder: {path.name} is missing.")
     try:
         return TypeAdapter(record_type).validate_json(read_text(path, max_bytes=_MOST_BYTES))
     except FileError as error:

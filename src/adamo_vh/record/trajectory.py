@@ -1,34 +1,25 @@
-"""What happened, as it happens: typed events, observers of them, and the run folder.
-
-A run folder holds `manifest.json` (how the episode was set up), `events.jsonl` (one event a line,
-flushed at once, so that a kill loses at most the step in flight) and `frames/` (pictures named by
-their content). Everything else, the score too, can be computed from these.
-"""
+"""What happened, as it happens: typed events, observers of them, and how they are read back."""
 
 from __future__ import annotations
 
 import hashlib
-from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import IO, Annotated, Any, Literal, Protocol
+from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import Field, TypeAdapter, ValidationError
 
 from adamo_vh.action import Feedback
 from adamo_vh.action_server import ActionResult
 from adamo_vh.errors import RecordError
-from adamo_vh.files import write_whole
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
 from adamo_vh.inference.model import Ending, Reply, Rung, Usage
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
+from adamo_vh.record.run_folder import EVENTS
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.turn import reasoning
-
-EVENTS = "events.jsonl"
-FRAMES = "frames"
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,71 +234,9 @@ def frame_name(frame: Frame) -> str:
 
 
 @cache
-def _codec() -> TypeAdapter[Event]:
+def codec() -> TypeAdapter[Event]:
+    """Writes an event as a line of the record, and reads it."""
     return TypeAdapter(Annotated[Event, Field(discriminator="type")])
-
-
-class TrajectoryWriter:
-    """Writes events and frames into a run folder, each at once."""
-
-    def __init__(self, folder: Path, *, known: Sequence[Event] | None = None) -> None:
-        """Open a run folder.
-
-        Args:
-            folder: Is made if it is missing.
-            known: Go on with an interrupted episode: these events are the first of the file and
-                will come again; they are not written twice. What the file has after them is lost.
-
-        Raises:
-            RecordError: It already holds an episode.
-        """
-        self._known = deque(known or ())
-        if known is not None:
-            _keep_lines(folder / EVENTS, len(known))
-        elif (folder / EVENTS).exists():
-            raise RecordError(f"{folder} already holds an episode; choose another --out folder.")
-        (folder / FRAMES).mkdir(parents=True, exist_ok=True)
-        self._folder = folder
-        self._file: IO[bytes] = (folder / EVENTS).open("ab")
-
-    def notify(self, event: Event, frame: Frame | None = None) -> None:
-        """Write an event; its frame first, so that no event names a missing picture.
-
-        Raises:
-            RecordError: A known event came out otherwise this time.
-        """
-        if self._known:
-            if not _is_same(event, self._known[0]):
-                raise RecordError(
-                    f"{self._folder} cannot be gone on with: it came out otherwise this time, "
-                    f"{event.type!r} where {self._known[0].type!r} was recorded. Was it recorded "
-                    "by another version or on another kind of machine?"
-                )
-            self._known.popleft()
-            return
-        if frame is not None:
-            path = self._folder / FRAMES / frame_name(frame)
-            if not path.exists():
-                write_whole(path, frame.data)
-        self._file.write(_codec().dump_json(event) + b"\n")
-        self._file.flush()
-
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
-
-
-def _keep_lines(path: Path, count: int) -> None:
-    """Keep the first lines, without what a kill left of another."""
-    kept = path.read_bytes().splitlines(keepends=True)[:count]
-    with path.open("r+b") as file:
-        file.truncate(sum(map(len, kept)))
-
-
-def _is_same(event: Event, known: Event) -> bool:
-    """Whether an event came again: in the same state, where it tells one."""
-    states = (getattr(event, "state_hash", ""), getattr(known, "state_hash", ""))
-    return event.type == known.type and states[0] == states[1]
 
 
 class Trajectory:
@@ -361,7 +290,7 @@ def read_trajectory(folder: Path) -> Trajectory:
     events: list[Event] = []
     for number, line in enumerate(lines[:-1], start=1):
         try:
-            events.append(_codec().validate_json(line))
+            events.append(codec().validate_json(line))
         except ValidationError as error:
             problem = error.errors()[0]["msg"]
             raise RecordError(

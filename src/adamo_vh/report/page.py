@@ -30,8 +30,9 @@ from adamo_vh.files import write_whole
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.model import Usage
 from adamo_vh.perception import Labeling
+from adamo_vh.record.run_folder import FRAMES
 from adamo_vh.record.termination import Limits, TerminationReason
-from adamo_vh.record.trajectory import FRAMES, Ended, Thought, Trajectory, read_trajectory
+from adamo_vh.record.trajectory import Ended, Thought, Trajectory, read_trajectory
 from adamo_vh.report.floor_plan import MARGIN_M, floor_plan
 from adamo_vh.report.timeline import turns
 

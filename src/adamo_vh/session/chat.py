@@ -8,20 +8,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from adamo_vh.cognition.guards import Guard
-from adamo_vh.episode.result import MANIFEST, EpisodeConfig, read_manifest, write_record
+from adamo_vh.episode.result import EpisodeConfig, read_manifest, write_record
 from adamo_vh.inference.model import Model
 from adamo_vh.inference.players.cassette import FOLDER, taped
 from adamo_vh.observation import Frame
-from adamo_vh.record.trajectory import (
-    Ended,
-    Event,
-    Observer,
-    TrajectoryWriter,
-    read_trajectory,
-)
+from adamo_vh.record.run_folder import MANIFEST, FolderLock, check_unused
+from adamo_vh.record.trajectory import Ended, Event, Observer
+from adamo_vh.record.writer import TrajectoryWriter
 from adamo_vh.report.page import write_page
 from adamo_vh.session.engines import create_engine
-from adamo_vh.session.episode import create_agent, describe, resumed_player
+from adamo_vh.session.episode import create_agent, describe, read_unfinished, resumed_player
 from adamo_vh.session.players import create_player, fitting
 
 
@@ -41,6 +37,7 @@ class ChatSession:
         *,
         known: Sequence[Event] | None = None,
         record: bool = False,
+        lock: FolderLock | None = None,
         guards: Sequence[Guard] = (),
         observers: Sequence[Observer] = (),
     ) -> None:
@@ -52,19 +49,24 @@ class ChatSession:
             model: Who thinks; closed with the session.
             record: Also keep every request and reply of the model, as a cassette.
             known: Events that are recorded already and will come again; None begins a new record.
+            lock: Of the folder, where the caller holds it; let go of with the session.
             guards: Further reasons to stop.
             observers: Are told of every event that is not known yet.
         """
         self.folder = folder
         with ExitStack() as stack:
             stack.callback(model.info.close)
+            held = lock or FolderLock(folder)
+            stack.callback(held.close)
+            if known is None:
+                check_unused(folder)
             engine = create_engine(config.scene, config.figure)
             stack.callback(engine.close)
             engine.reset(config.seed)
-            writer = TrajectoryWriter(folder, known=known)
-            stack.callback(writer.close)
             if known is None:
                 write_record(folder, MANIFEST, describe(config, model, engine))
+            self._writer = writer = TrajectoryWriter(folder, known=known, lock=held)
+            stack.callback(writer.close)
             if record:
                 model = taped(model, folder / FOLDER)
             before = known or ()
@@ -119,16 +121,23 @@ class ChatSession:
         interrupted is then carried out to its end.
 
         Raises:
-            RecordError: The folder holds no run.
+            RecordError: The folder holds no run, or somebody else writes it, or it came out
+                otherwise. The record is as it was.
         """
         path = Path(folder)
-        manifest, recorded = read_manifest(path), read_trajectory(path)
-        config, known = manifest.config, recorded.events
-        player = resumed_player(path, config, recorded, None)
-        session = cls(config, path, player, known=known, guards=guards, observers=observers)
+        read_manifest(path)
+        with ExitStack() as stack:
+            lock = stack.enter_context(FolderLock(path))
+            config, recorded = read_manifest(path).config, read_unfinished(path)
+            player = resumed_player(path, config, recorded, None)
+            known = recorded.events
+            session = cls(
+                config, path, player, known=known, lock=lock, guards=guards, observers=observers
+            )
+            stack.pop_all()
         try:
             for instruction in recorded.instructions:
-                session._agent.run(instruction)
+                session._run(instruction)
             write_page(path)
         except BaseException:
             session.close()
@@ -137,8 +146,14 @@ class ChatSession:
 
     def say(self, instruction: str) -> Ended:
         """Have one instruction carried out; world and memory stay for the next one."""
-        ended = self._agent.run(instruction)
+        ended = self._run(instruction)
         write_page(self.folder)
+        return ended
+
+    def _run(self, instruction: str) -> Ended:
+        ended = self._agent.run(instruction)
+        if self._writer.fault is not None:
+            raise self._writer.fault
         return ended
 
     def close(self) -> None:

@@ -21,8 +21,6 @@ from adamo_vh.cognition.profile import Profile
 from adamo_vh.cognition.profile import profile as find_profile
 from adamo_vh.engine import World
 from adamo_vh.episode.result import (
-    MANIFEST,
-    RESULT,
     EpisodeConfig,
     EpisodeResult,
     Manifest,
@@ -35,14 +33,10 @@ from adamo_vh.inference.model import Model, ModelKind, Sampling
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.inference.players.resumed import resumed
 from adamo_vh.perception import Labeling, TextForm
+from adamo_vh.record.run_folder import EVENTS, MANIFEST, RESULT, FolderLock, check_unused
 from adamo_vh.record.termination import Limits
-from adamo_vh.record.trajectory import (
-    Event,
-    Observer,
-    Trajectory,
-    TrajectoryWriter,
-    read_trajectory,
-)
+from adamo_vh.record.trajectory import Event, Observer, Trajectory, read_trajectory
+from adamo_vh.record.writer import TrajectoryWriter
 from adamo_vh.report.page import write_page
 from adamo_vh.session.engines import create_engine, instructions, open_server
 from adamo_vh.session.forecasting import forecast_episodes
@@ -160,8 +154,10 @@ def run_episode(
         kept = None
         if out is not None:
             folder = Path(out)
-            kept = (TrajectoryWriter(folder), folder)
+            lock = stack.enter_context(FolderLock(folder))
+            check_unused(folder)
             write_record(folder, MANIFEST, manifest)
+            kept = (TrajectoryWriter(folder, lock=lock), folder)
             if record:
                 player = taped(player, folder / FOLDER)
         return _play(manifest, player, world, kept, tools, (guards, observers))
@@ -224,6 +220,8 @@ def _play(
     finally:
         if writer is not None:
             writer.close()
+    if writer is not None and writer.fault is not None:
+        raise writer.fault
     result = summarise(manifest, trajectory, engine.state(), folder)
     if folder is not None:
         write_record(folder, RESULT, result)
@@ -271,27 +269,37 @@ def resume_episode(
         observers: Are told of every event, the repeated ones too.
 
     Raises:
-        RecordError: The folder holds no run, or one that has ended, or a conversation.
+        RecordError: The folder holds no run, or one that has ended, or a conversation; or somebody
+            else writes it; or it came out otherwise. The record is as it was.
     """
     path = Path(folder)
-    manifest, recorded = read_manifest(path), read_trajectory(path)
-    if len(recorded.instructions) > 1:
-        raise RecordError(f"{path} is a conversation; go on with: adamo-vh chat --resume {path}")
-    known = recorded.events
-    if recorded.ended is not None:
-        if (path / RESULT).exists():
-            reason = recorded.ended.reason
-            raise RecordError(f"{path} has ended ({reason}); nothing is left to resume.")
-        known = known[:-1]  # Its result is missing: let it end once more.
+    read_manifest(path)
     with ExitStack() as stack:
+        lock = stack.enter_context(FolderLock(path))
+        manifest, recorded = read_manifest(path), read_unfinished(path)
+        if len(recorded.instructions) > 1:
+            raise RecordError(
+                f"{path} is a conversation; go on with: adamo-vh chat --resume {path}"
+            )
+        known = recorded.events
+        if (ended := recorded.ended) is not None:
+            if ended.reason.is_scored and (path / RESULT).exists():
+                raise RecordError(f"{path} has ended ({ended.reason}); nothing is left to resume.")
+            # It broke, or its result is missing: let it go on from there.
+            known = known[:-1]
         player = resumed_player(path, manifest.config, recorded, model)
         if model is None:
             stack.callback(player.info.close)
         engine = create_engine(manifest.config.scene, manifest.config.figure)
         stack.callback(engine.close)
         engine.reset(manifest.config.seed)
-        kept = (TrajectoryWriter(path, known=known), path)
+        kept = (TrajectoryWriter(path, known=known, lock=lock), path)
         return _play(manifest, player, engine, kept, tools, (guards, observers), known)
+
+
+def read_unfinished(folder: Path) -> Trajectory:
+    """What was recorded so far; nothing, if the run was stopped before its first event."""
+    return read_trajectory(folder) if (folder / EVENTS).exists() else Trajectory()
 
 
 def resumed_player(

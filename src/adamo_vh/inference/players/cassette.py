@@ -51,8 +51,9 @@ def taped(model: Model, folder: str | Path, *, known: int | None = None) -> Mode
             model or too few.
     """
     path, numbers = Path(folder) / CALLS, itertools.count((known or 0) + 1)
+    first: bytes | None = None
     if known is not None and path.exists():
-        _keep_first(path, known, model.info)
+        first = _first(path, known, model.info)
     elif known:
         raise RecordError(f"{folder} holds no cassette to go on with.")
     else:
@@ -63,6 +64,11 @@ def taped(model: Model, folder: str | Path, *, known: int | None = None) -> Mode
     ) -> Reply:
         reply = ask(messages, tools, sampling)
         call = Call(next(numbers), request_of(messages, tools, sampling), clean_reply(reply))
+        nonlocal first
+        if first is not None:
+            # Only now is it sure that the episode goes on where it was left.
+            write_whole(path, first)
+            first = None
         append_line(path, codec().dump_json(call))
         return reply
 
@@ -78,8 +84,8 @@ def _begin(path: Path, who: ModelInfo) -> None:
     write_whole(folder / LABEL, json.dumps(label).encode() + b"\n")
 
 
-def _keep_first(path: Path, count: int, who: ModelInfo) -> None:
-    """Leave the first calls alone in a cassette."""
+def _first(path: Path, count: int, who: ModelInfo) -> bytes:
+    """The first calls of a cassette."""
     folder = path.parent
     name, kind = _read_label(folder)
     if (name, kind) != (who.name, who.kind):
@@ -92,7 +98,7 @@ def _keep_first(path: Path, count: int, who: ModelInfo) -> None:
             f"{folder} holds {len(lines)} calls, and {count} were answered. Delete it to go "
             "on without a recording."
         )
-    write_whole(path, b"".join(lines[:count]))
+    return b"".join(lines[:count])
 
 
 class Cassette:

@@ -1,0 +1,124 @@
+"""Writes what happens into a run folder; what is on record already is verified instead."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from pathlib import Path
+from typing import IO
+
+from adamo_vh.errors import FileError, RecordError
+from adamo_vh.files import make_folder, naming, write_whole
+from adamo_vh.observation import Frame
+from adamo_vh.record.run_folder import EVENTS, FRAMES, RESULT, FolderLock
+from adamo_vh.record.trajectory import Event, codec, frame_name
+
+
+class TrajectoryWriter:
+    """Writes events and frames into a run folder, each at once."""
+
+    def __init__(
+        self, folder: Path, *, known: Sequence[Event] | None = None, lock: FolderLock | None = None
+    ) -> None:
+        """Open a run folder.
+
+        Args:
+            folder: Is made if it is missing.
+            known: Go on with an interrupted episode: these events are the first of the file and
+                will come again; they are not written twice. What the file has after them stays
+                until all of them came again and something new happens.
+            lock: Of the folder, if the caller holds it already; taken and closed here otherwise.
+
+        Raises:
+            RecordError: It already holds an episode, or somebody else writes it.
+        """
+        self.fault: RecordError | FileError | None = None
+        """Why nothing more is written; None if all is well."""
+        self._folder = folder
+        self._known = None if known is None else deque(known)
+        self._count = len(known or ())
+        self._file: IO[bytes] | None = None
+        self._own_lock = FolderLock(folder) if lock is None else None
+        try:
+            if known is None:
+                if (folder / EVENTS).exists():
+                    raise RecordError(
+                        f"{folder} already holds an episode; choose another --out folder."
+                    )
+                self._file = self._opened()
+        except BaseException:
+            self.close()
+            raise
+
+    def notify(self, event: Event, frame: Frame | None = None) -> None:
+        """Write an event; its frame first, so that no event names a missing picture.
+
+        Raises:
+            RecordError: A known event came out otherwise this time. Nothing is written afterwards.
+            FileError: The folder cannot be written any more; neither is it afterwards.
+        """
+        if self.fault is not None:
+            return
+        try:
+            if self._known:
+                self._verify(event, self._known.popleft())
+            else:
+                with naming("written", self._folder):
+                    self._write(event, frame)
+        except (RecordError, FileError) as error:
+            self.fault = error
+            raise
+
+    def _verify(self, event: Event, known: Event) -> None:
+        """Make sure that an event came again: in the same state, where it tells one."""
+        states = [getattr(one, "state_hash", "") for one in (event, known)]
+        if event.type == known.type and states[0] == states[1]:
+            return
+        line = self._count - len(self._known or ())
+        raise RecordError(
+            f"{self._folder} cannot be continued: executed again, it came out otherwise. First "
+            f"difference in line {line} of {EVENTS}: {_spelt(event)}, where {_spelt(known)} was "
+            "recorded. Was it recorded by another version, with other tools, or on another kind "
+            "of machine? The record is as it was."
+        )
+
+    def _write(self, event: Event, frame: Frame | None) -> None:
+        if self._file is None:
+            # Now that all came again as it was, a later end and what a kill left may go.
+            (self._folder / RESULT).unlink(missing_ok=True)
+            _keep_lines(self._folder / EVENTS, self._count)
+            self._file = self._opened()
+        if frame is not None:
+            path = self._folder / FRAMES / frame_name(frame)
+            if not path.exists():
+                write_whole(path, frame.data)
+        self._file.write(codec().dump_json(event) + b"\n")
+        self._file.flush()
+
+    def _opened(self) -> IO[bytes]:
+        with naming("written", make_folder(self._folder / FRAMES)):
+            return (self._folder / EVENTS).open("ab")
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+        if self._own_lock is not None:
+            self._own_lock.close()
+
+
+def _keep_lines(path: Path, count: int) -> None:
+    """Keep the first lines, without what a kill left of another."""
+    if not path.exists():
+        return
+    first = path.read_bytes().splitlines(keepends=True)[:count]
+    with path.open("r+b") as file:
+        file.truncate(sum(map(len, first)))
+
+
+def _spelt(event: Event) -> str:
+    """An event in a few words, with the state that it led to."""
+    name, step = getattr(event, "name", ""), getattr(event, "step", None)
+    state = getattr(event, "state_hash", "")[:12]
+    words = [f'"{event.type}"', name, "" if step is None else f"at step {step}"]
+    return " ".join(word for word in (*words, f"in state {state}" if state else "") if word)
