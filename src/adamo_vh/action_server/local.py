@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, ClassVar
@@ -10,10 +11,11 @@ from typing import TYPE_CHECKING, ClassVar
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from adamo_vh.action import Action, Code, Feedback, Outcome, action_name
+from adamo_vh.action_server.frame_check import frame_fault
 from adamo_vh.action_server.protocol import ActionResult, Sighting
 from adamo_vh.action_server.tools import PAPER_TOOLS, Tool
 from adamo_vh.engine import Body, SceneInfo, World, acting_body
-from adamo_vh.errors import EngineError, InvalidActionError
+from adamo_vh.errors import AdamoError, EngineError, InvalidActionError
 from adamo_vh.geometry import Vec3
 from adamo_vh.observation import AgentState, Frame, Observation, Percept
 from adamo_vh.perception import PerceptionConfig, agent_state, perceive
@@ -104,10 +106,22 @@ class LocalActionServer:
 
     def observe(self) -> Sighting:
         """The view from where the body stands now; what it lists counts as seen."""
-        return Sighting(self._view(), self.state_hash(), self.save())
+        with _as_engine_fault("observe"):
+            return Sighting(self._view(), self.state_hash(), self.save())
+
+    def _see(self) -> Percept:
+        """What the eyes see now.
+
+        Raises:
+            EngineError: The picture cannot be one of the world: nothing may be scored on it.
+        """
+        percept = self._body.see(*self._resolution)
+        if fault := frame_fault(percept, self._world.state(), self._body):
+            raise EngineError(f"The engine drew a wrong picture: {fault}. Make a new engine.")
+        return percept
 
     def _view(self) -> Observation:
-        percept = self._body.see(*self._resolution)
+        percept = self._see()
         raycast = only(self._is_anchor, self._body.rays)
         observation = perceive(percept, raycast, self._perception, self._names)
         for item in observation.objects:
@@ -151,7 +165,7 @@ class LocalActionServer:
 
     def _in_view(self) -> tuple[Percept, Sequence[VisibleObject]]:
         """What the eyes see now, and what of it is large enough to be listed."""
-        percept = self._body.see(*self._resolution)
+        percept = self._see()
         return percept, visible_objects(percept, self._perception.min_pixels)
 
     def _show(self, picture: Image) -> None:
@@ -160,19 +174,21 @@ class LocalActionServer:
 
     def execute(self, action: Action) -> ActionResult:
         """Carry out one action of a type on offer; what the agent did wrong becomes feedback."""
+        name = action_name(type(action))
         self._shown = []
-        try:
-            feedback = self._tools[type(action)].execute(self, action)
-        except InvalidActionError as error:
-            feedback = Feedback.of_error(error)
-        grants = action_name(type(action)) in self._refresh_after
-        view = self._view() if grants and feedback.outcome is not Outcome.REFUSED else None
-        return self._result(feedback, view)
+        with _as_engine_fault(name):
+            try:
+                feedback = self._tools[type(action)].execute(self, action)
+            except InvalidActionError as error:
+                feedback = Feedback.of_error(error)
+            grants = name in self._refresh_after and feedback.outcome is not Outcome.REFUSED
+            return self._result(feedback, self._view() if grants else None)
 
     def refuse(self, error: InvalidActionError) -> ActionResult:
         """Answer a call that is no valid action: nothing changes."""
         self._shown = []
-        return self._result(Feedback.of_error(error), None)
+        with _as_engine_fault("refuse"):
+            return self._result(Feedback.of_error(error), None)
 
     def _result(self, feedback: Feedback, view: Observation | None) -> ActionResult:
         hashed, saved = self.state_hash(), self.save()
@@ -184,7 +200,8 @@ class LocalActionServer:
 
     def say(self, text: str) -> None:
         """Deliver the final answer through the body."""
-        self._body.say(text)
+        with _as_engine_fault("say"):
+            self._body.say(text)
 
     def state_hash(self) -> str:
         """Digest of the world now."""
@@ -205,9 +222,27 @@ class LocalActionServer:
             kept = _codec().validate_json(saved)
         except ValidationError as error:
             raise EngineError(f"The saved state is damaged: {error.errors()[0]['msg']}") from None
-        self._world.restore(kept.engine)
+        if unknown := set(kept.seen) - set(self._names):
+            raise EngineError(
+                f"The saved state is damaged: the scene has no object {min(unknown)}."
+            )
+        with _as_engine_fault("load"):
+            self._world.restore(kept.engine)
         self._seen = set(kept.seen)
         return self.state_hash()
+
+
+@contextmanager
+def _as_engine_fault(what: str) -> Iterator[None]:
+    """Say in a sentence what an engine or a tool from outside did wrong."""
+    try:
+        yield
+    except AdamoError:
+        raise
+    except Exception as fault:
+        raise EngineError(
+            f"The engine or a tool failed in {what}: {type(fault).__name__}: {fault}"
+        ) from fault
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,13 +83,9 @@ def _cache() -> str:
 
 
 def _graphics() -> str:
-    from adamo_vh.runtime.rendering import open_gl
+    from adamo_vh.runtime.graphics import backend_name
 
-    context = open_gl(64, 64)
-    context.make_current()
-    name = type(context).__module__.rpartition(".")[2]
-    context.free()
-    return f"off-screen OpenGL through {name}"
+    return f"off-screen OpenGL through {backend_name()}"
 
 
 def _test_frame() -> str:

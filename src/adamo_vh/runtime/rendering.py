@@ -7,12 +7,12 @@ own Python `Renderer` decodes ids geom by geom; this one looks one byte a pixel 
 
 from __future__ import annotations
 
-import ctypes
 import math
-import os
-import sys
+import weakref
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from adamo_vh.errors import RenderingError
 from adamo_vh.geometry import Camera
 from adamo_vh.observation import NOTHING
+from adamo_vh.runtime.graphics import free_later, in_graphics_thread, is_alive, open_gl
 from adamo_vh.runtime.human.skin_mujoco import HEAD_GROUP
 
 if TYPE_CHECKING:
@@ -28,47 +29,8 @@ if TYPE_CHECKING:
 MSAA_SAMPLES = 4
 SHADOW_MAP_PX = 2048
 _MAX_GEOMS = 4000
-_FIX = "install one with 'apt-get install libegl1 libopengl0 libgl1-mesa-dri' (or libosmesa6)"
-_NO_GL = (ImportError, RuntimeError, AttributeError, OSError, TypeError, ctypes.ArgumentError)
-"""What a missing or broken OpenGL library raises, depending on which part is missing."""
 
-
-def open_gl(width_px: int, height_px: int) -> Any:
-    """Open an off-screen OpenGL context: EGL, else OSMesa; `MUJOCO_GL` decides where it is set.
-
-    Returns:
-        A context with `make_current` and `free`.
-
-    Raises:
-        RenderingError: Neither works; names the packages that help.
-    """
-    asked = os.environ.get("MUJOCO_GL", "").lower()
-    backends = [asked] if asked in ("egl", "osmesa") else ["egl", "osmesa"]
-    problems = []
-    for backend in backends:
-        try:
-            return _open_backend(backend, width_px, height_px)
-        except _NO_GL as error:
-            problems.append(f"{backend}: {error}")
-    raise RenderingError(f"No OpenGL to draw with ({'; '.join(problems)}); {_FIX}.")
-
-
-def _open_backend(backend: str, width_px: int, height_px: int) -> Any:
-    library = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}[backend]
-    if sys.platform == "linux":
-        ctypes.CDLL(library)
-    if os.environ.get("PYOPENGL_PLATFORM", backend) != backend:
-        # PyOpenGL binds to one platform at import; a failed first choice must be unloaded.
-        for name in [n for n in sys.modules if n.split(".")[0] == "OpenGL"]:
-            del sys.modules[name]
-        sys.modules.pop("mujoco.egl", None)
-        sys.modules.pop("mujoco.egl.egl_ext", None)
-    os.environ["PYOPENGL_PLATFORM"] = backend
-    if backend == "egl":
-        from mujoco.egl import GLContext
-    else:
-        from mujoco.osmesa import GLContext
-    return GLContext(width_px, height_px)
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +44,11 @@ class IdLayer:
 
 
 class SceneRenderer:
-    """Draws one MuJoCo model from any camera, in colour and as ids."""
+    """Draws one MuJoCo model from any camera, in colour and as ids.
+
+    May be used in any thread, by one at a time, and forgotten in any: the graphics thread draws and
+    frees.
+    """
 
     def __init__(self, model: mujoco.MjModel, object_of_geom: NDArray[np.int16]) -> None:
         """Open graphics for a model.
@@ -99,10 +65,10 @@ class SceneRenderer:
         self._mujoco = mujoco
         self._model = model
         self._object_of_geom = object_of_geom
-        self._gl = open_gl(model.vis.global_.offwidth, model.vis.global_.offheight)
-        self._gl.make_current()
-        self._contexts = _context(model, MSAA_SAMPLES, SHADOW_MAP_PX), _plain_context(model)
-        self._closed = False
+        self._gl, self._contexts = in_graphics_thread(partial(_opened, model))
+        # MuJoCo would free what it drew with in whatever context is current when it is forgotten.
+        self._free = weakref.finalize(self, free_later, partial(_freed, self._gl, self._contexts))
+        self._free.atexit = False
         self._scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
         self._option = mujoco.MjvOption()
         self._camera = mujoco.MjvCamera()
@@ -117,8 +83,6 @@ class SceneRenderer:
     def _aim(self, data: mujoco.MjData, camera: Camera) -> mujoco.MjrRect:
         """Point the MuJoCo camera, update the scene, and fit the buffers."""
         mujoco = self._mujoco
-        if self._closed:
-            raise RenderingError("The renderer was closed; make a new engine.")
         forward = camera.world_from_camera[:, 2]
         self._camera.distance = 1.0
         self._camera.lookat[:] = camera.position.array() + forward
@@ -135,11 +99,24 @@ class SceneRenderer:
             self._scene,
         )
         self._gl.make_current()
+        self._check()
         width, height = camera.width_px, camera.height_px
         for context in self._contexts:
             if width > context.offWidth or height > context.offHeight:
                 mujoco.mjr_resizeOffscreen(width, height, context)
         return mujoco.MjrRect(0, 0, width, height)
+
+    def _check(self) -> None:
+        """Make sure that nobody has freed what this draws with."""
+        for context in self._contexts:
+            parts = [("Framebuffer", context.offFBO), ("List", context.basePlane)]
+            if context.ntexture:
+                parts += [("Texture", int(context.texture[i])) for i in (0, context.ntexture - 1)]
+            if not all(is_alive(kind, name) for kind, name in parts):
+                raise RenderingError(
+                    "Another OpenGL user of this process has freed what the engine draws with: "
+                    "its pictures would be wrong. Make a new engine."
+                )
 
     def _draw(self, rect: mujoco.MjrRect, context: mujoco.MjrContext) -> NDArray[np.uint8]:
         mujoco = self._mujoco
@@ -163,7 +140,20 @@ class SceneRenderer:
 
         Returns:
             (H, W, 3) uint8.
+
+        Raises:
+            RenderingError: The renderer was closed, or its graphics memory was freed by others.
         """
+        return self._asked(partial(self._color, data, camera, head, shadow))
+
+    def _asked(self, job: Callable[[], _T]) -> _T:
+        if not self._free.alive:
+            raise RenderingError("The renderer was closed; make a new engine.")
+        return in_graphics_thread(job)
+
+    def _color(
+        self, data: mujoco.MjData, camera: Camera, head: bool, shadow: bool
+    ) -> NDArray[np.uint8]:
         self._option.skingroup[HEAD_GROUP] = head
         rect = self._aim(data, camera)
         self._scene.flags[self._mujoco.mjtRndFlag.mjRND_SHADOW.value] = shadow
@@ -173,6 +163,9 @@ class SceneRenderer:
         self, data: mujoco.MjData, camera: Camera, *, head: bool = False
     ) -> tuple[IdLayer, ...]:
         """Which object each pixel shows: in front and, if glass is in view, without the glass."""
+        return self._asked(partial(self._layers, data, camera, head))
+
+    def _layers(self, data: mujoco.MjData, camera: Camera, head: bool) -> tuple[IdLayer, ...]:
         self._option.skingroup[HEAD_GROUP] = head
         rect = self._aim(data, camera)
         front = self._ids(rect)
@@ -243,12 +236,22 @@ class SceneRenderer:
 
     def close(self) -> None:
         """Free the graphics memory."""
-        if not self._closed:
-            self._closed = True
-            self._gl.make_current()
-            for context in self._contexts:
-                context.free()
-            self._gl.free()
+        self._free()
+
+
+def _opened(model: mujoco.MjModel) -> tuple[Any, tuple[mujoco.MjrContext, mujoco.MjrContext]]:
+    """A context of OpenGL, and in it those for colour and for ids."""
+    gl = open_gl(model.vis.global_.offwidth, model.vis.global_.offheight)
+    gl.make_current()
+    return gl, (_context(model, MSAA_SAMPLES, SHADOW_MAP_PX), _plain_context(model))
+
+
+def _freed(gl: Any, contexts: tuple[mujoco.MjrContext, ...]) -> None:
+    """Free what `_opened` gave, in its own context."""
+    gl.make_current()
+    for context in contexts:
+        context.free()
+    gl.free()
 
 
 def _bounds(mask: NDArray[np.bool_]) -> tuple[slice, slice]:
