@@ -69,7 +69,17 @@ class ModelConfigError(ModelError):
 
 
 class ProviderError(ModelError):
-    """The provider failed after all retries."""
+    """The provider failed after all retries.
+
+    Attributes:
+        status: The HTTP status of the last failure; None if nothing was answered.
+        words: What the server said of it, without keys.
+    """
+
+    def __init__(self, text: str, status: int | None = None, words: str = "") -> None:
+        super().__init__(text)
+        self.status = status
+        self.words = words
 
 
 class RefusedError(ProviderError):

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from adamo_vh.errors import ModelConfigError, ModelError
 from adamo_vh.inference.model import Rung
-from adamo_vh.inference.registry import create_local_model, probe_and_keep
+from adamo_vh.inference.registry import create_local_model, probe_and_save
 from adamo_vh.inference.remote.capabilities import (
     Capabilities,
     Support,
@@ -30,23 +30,28 @@ _OWN_TOOLS_FIX = (
 )
 _SCHEMA_FIX = "use a server that knows response_format json_schema: llama-server, vLLM, Ollama"
 
+_UNKNOWN = "unknown: the question was not answered; it will be asked again"
+
 _SIGHT = {
     Support.YES: "sees them",
     Support.NO: "accepted, but not seen: it named other colours than those shown",
     Support.REFUSED: "the server refuses them",
     Support.UNTESTED: "not tested: that takes sight and native tool calls",
+    Support.UNKNOWN: _UNKNOWN,
 }
 _TOOLS = {
     ToolSupport.NATIVE: "native",
     ToolSupport.LEAKED: "written into the text, where they are recognised",
     ToolSupport.NONE: "none came, although a tool was on offer and asked for",
     ToolSupport.REFUSED: "the server refuses tools",
+    ToolSupport.UNKNOWN: _UNKNOWN,
 }
 _SCHEMA = {
     Support.YES: "obeyed",
     Support.NO: "accepted, but not obeyed",
     Support.REFUSED: "the server refuses it",
     Support.UNTESTED: "not tested",
+    Support.UNKNOWN: _UNKNOWN,
 }
 _WAY = {
     Rung.NATIVE: "native: through the tool calls of its API",
@@ -54,6 +59,7 @@ _WAY = {
     Rung.SCHEMA: "schema: no tools, each answer one JSON step held to a schema",
     Rung.REACT: "react: no tools, each answer the lines Thought, Action and Action Input",
 }
+_NO_WAY = "not known yet: ask again, or choose with --tool-calls native, schema or react"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,18 +80,19 @@ def check(uri: str, *, refresh: bool, as_json: bool) -> None:
         return
     known = None if refresh else load_capabilities(uri)
     try:
-        found = known or probe_and_keep(uri)
+        cached = known is not None and known.is_complete
+        found = known if known and cached else probe_and_save(uri, known=known)
     except ModelConfigError:
         raise
     except ModelError as error:
         _show_unreached(uri, str(error), as_json=as_json)
         raise typer.Exit(1) from None
     if as_json:
-        facts = {"reachable": True, "cached": known is not None, **asdict(found)}
+        facts = {"reachable": True, "cached": cached, **asdict(found)}
         typer.echo(json.dumps(facts))
         return
     _show([*_lines(found)])
-    _show_cost(found, cached=known is not None)
+    _show_cost(found, cached=cached)
 
 
 def _lines(found: Capabilities) -> Iterator[_Line]:
@@ -96,27 +103,32 @@ def _lines(found: Capabilities) -> Iterator[_Line]:
     yield _sight("pictures in results", found.result_pictures)
     native = found.tools is ToolSupport.NATIVE
     tools_fix = _OWN_TOOLS_FIX if own else _TOOLS_FIX
-    yield _Line(_mark(native), "tool calls", _TOOLS[found.tools], "" if native else tools_fix)
+    fix = "" if native or found.tools is ToolSupport.UNKNOWN else tools_fix
+    yield _Line(_mark(found.tools, native), "tool calls", _TOOLS[found.tools], fix)
     obeyed = found.schema is Support.YES
     # Only a model without tool calls has use for a schema.
     fix = _SCHEMA_FIX if found.rung is Rung.REACT else ""
-    yield _Line(_mark(obeyed), "JSON schema", _SCHEMA[found.schema], fix)
+    yield _Line(_mark(found.schema, obeyed), "JSON schema", _SCHEMA[found.schema], fix)
     refused = ", ".join(found.refused)
     parameters = f"refuses {refused}; requests go without" if refused else "takes all that are sent"
-    yield _Line(_mark(not refused), "parameters", parameters)
-    yield _Line("=>", "asked", _WAY[found.rung])
+    yield _Line("no" if refused else "ok", "parameters", parameters)
+    for why in found.unanswered:
+        yield _Line("?", "not answered", why)
+    yield _Line("=>", "asked", _WAY[found.rung] if found.rung else _NO_WAY)
 
 
 def _sight(what: str, support: Support, fix: str = "") -> _Line:
-    mark = "--" if support is Support.UNTESTED else _mark(support is Support.YES)
+    mark = _mark(support, support is Support.YES)
     return _Line(mark, what, _SIGHT[support], fix if mark == "no" else "")
 
 
-def _mark(good: bool) -> str:
+def _mark(found: Support | ToolSupport, good: bool) -> str:
+    if found in (Support.UNTESTED, Support.UNKNOWN):
+        return "--" if found == Support.UNTESTED else "?"
     return "ok" if good else "no"
 
 
-_COLOURS = {"ok": "green", "no": "yellow", "--": "dim", "FAIL": "red", "=>": "bold"}
+_COLOURS = {"ok": "green", "no": "yellow", "?": "yellow", "--": "dim", "FAIL": "red", "=>": "bold"}
 
 
 def _show(lines: list[_Line]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from adamo_vh.errors import ModelConfigError
+from adamo_vh.errors import ModelConfigError, ModelError
 from adamo_vh.inference.model import Model, Rung
 from adamo_vh.inference.remote.retry import RetryPolicy
 
@@ -131,26 +131,40 @@ def _remote_model(
 
     check_remote_allowed(parse_endpoint(uri))
     known = load_capabilities(uri)
-    if known is None and tools == AUTO:
-        known = probe_and_keep(uri, retry)
+    if tools == AUTO and (known is None or not known.is_complete):
+        known = probe_and_save(uri, retry, known)
     refused = known.refused if known else ()
     model = ProviderModel(uri, retry, refused, several_calls=several_calls, cache=cache, seed=seed)
-    rung = known.rung if known and tools == AUTO else _RUNGS[tools]
+    rung = known.rung if known and tools == AUTO else _RUNGS.get(tools)
+    if rung is None:
+        why = " ".join(known.unanswered) if known else ""
+        raise ModelError(
+            f"{uri}: how to ask it is not known, because a question about it was not answered "
+            f"({why.rstrip('.')}). Try again later, or choose with --tool-calls native, schema or "
+            "react."
+        )
     return Ladder(model, rung, known)
 
 
-def probe_and_keep(uri: str, retry: RetryPolicy | None = None) -> Capabilities:
-    """Probe a remote model and keep what was found out for the next time.
+def probe_and_save(
+    uri: str, retry: RetryPolicy | None = None, known: Capabilities | None = None
+) -> Capabilities:
+    """Probe a remote model and save what was found out for the next time.
+
+    Args:
+        uri: URI of a remote model.
+        retry: Limits on trying again.
+        known: What an earlier probe found; only what it left unknown is asked.
 
     Raises:
         ModelConfigError: The URI, the provider's package or its key is wrong or missing.
-        ModelError: The model cannot be reached; nothing is kept.
+        ModelError: The model cannot be reached; nothing is saved.
     """
     from adamo_vh.inference.remote.capabilities import save_capabilities
     from adamo_vh.inference.remote.probe import probe
 
     check_remote_uri(uri)
-    found = probe(uri, retry)
+    found = probe(uri, retry, known)
     save_capabilities(found)
     return found
 

@@ -21,7 +21,7 @@ from adamo_vh.inference.remote.capabilities import (
     load_capabilities,
     save_capabilities,
 )
-from adamo_vh.inference.remote.probe import probe
+from adamo_vh.inference.remote.probe import LAMP, probe
 from adamo_vh.inference.remote.retry import RetryPolicy
 
 QUICK = RetryPolicy(max_tries=2, max_wait_s=2.0, base_s=0.001, timeout_s=5.0)
@@ -154,7 +154,111 @@ def test_a_rate_limit_on_the_way_is_not_taken_for_a_refusal(own_cache: Path) -> 
     assert not list(own_cache.rglob("*.json"))
 
 
-def test_what_was_found_is_kept_for_the_next_time() -> None:
+def about(request: Json) -> str:
+    """Which question of the probe a request is."""
+    if "response_format" in request:
+        return "schema"
+    if LAMP.name in str(request.get("tools")):
+        roles = [message["role"] for message in request["messages"]]
+        return "result" if "assistant" in roles else "tool"
+    return "pictures" if "image_url" in str(request["messages"]) else "word"
+
+
+class Shaky:
+    """Answers like a mind, but a question with a fault, so many times."""
+
+    def __init__(self, question: str, fault: Canned, times: int) -> None:
+        self.brain = Brain()
+        self.question, self.fault, self.times = question, fault, times
+
+    def __call__(self, request: Json) -> Canned:
+        if about(request) == self.question and self.times > 0:
+            self.times -= 1
+            return self.fault
+        return self.brain(request)
+
+
+NO_VERDICT = {
+    "overload": fault(503, "The server is overloaded."),
+    "gateway": fault(502, "bad gateway"),
+    "limit": fault(429, "slow down", {"Retry-After": "61"}),
+    "reset": Canned(cut=True),
+    "slow": Canned(delay_s=2.0),
+    "account": fault(402, "tool calls take credit"),
+    "key": fault(403, "images are not for you"),
+    "too long": fault(400, "this model's maximum context length is 8 tokens, tools included"),
+    "other": fault(400, "your organisation must be verified"),
+    "empty": completion(""),
+}
+
+
+@pytest.mark.parametrize("why", NO_VERDICT)
+@pytest.mark.parametrize("question", ["pictures", "tool", "schema"])
+def test_a_question_that_a_passing_fault_swallowed_is_asked_again(question: str, why: str) -> None:
+    if why == "slow" and question != "tool":
+        pytest.skip("one is enough")
+    times = 1 if why in ("limit", "account", "key", "too long", "other", "empty") else 2
+    retry = replace(QUICK, timeout_s=1.0) if why == "slow" else QUICK
+    with FakeProvider(Shaky(question, NO_VERDICT[why], times)) as server:
+        found = probe(server.uri(), retry)
+    assert found.is_complete and found.unanswered == ()
+    assert (found.tools, found.pictures) == (ToolSupport.NATIVE, Support.YES)
+    assert (found.schema, found.result_pictures) == (Support.YES, Support.YES)
+
+
+@pytest.mark.parametrize("why", ["overload", "gateway", "limit", "account", "other", "empty"])
+def test_what_was_not_answered_is_unknown_and_asked_next_time(why: str) -> None:
+    shaky = Shaky("tool", NO_VERDICT[why], 99)
+    with FakeProvider(shaky) as server:
+        with pytest.raises(ModelError, match=r"not answered .*--tool-calls native"):
+            create_model(server.uri(), QUICK)
+        found = load_capabilities(server.uri())
+        assert found is not None
+        assert (found.tools, found.rung, found.is_complete) == (ToolSupport.UNKNOWN, None, False)
+        assert (found.pictures, found.schema) == (Support.YES, Support.YES)
+        assert found.result_pictures is Support.UNKNOWN
+        assert "tool calls: " in found.unanswered[0]
+        before, shaky.times = len(server.requests), 0
+        model = create_model(server.uri(), QUICK)
+        # Only what was unknown is asked: the tool, and the picture in its result.
+        assert [about(r) for r in server.requests[before:]] == ["tool", "result"]
+        known = model.info.capabilities
+        assert known is not None and known.is_complete
+        assert (model.info.rung, known.result_pictures) == (Rung.NATIVE, Support.YES)
+        create_model(server.uri(), QUICK)
+        assert len(server.requests) == before + 2
+
+
+def test_a_picture_that_was_not_answered_stops_no_run() -> None:
+    with FakeProvider(Shaky("pictures", fault(502, "bad gateway"), 99)) as server:
+        model = create_model(server.uri(), QUICK)
+    known = model.info.capabilities
+    assert known is not None
+    assert (known.pictures, known.result_pictures) == (Support.UNKNOWN, Support.UNKNOWN)
+    assert model.info.rung is Rung.NATIVE
+
+
+@pytest.mark.parametrize(
+    ("question", "status", "words"),
+    [
+        ("tool", 404, "No endpoints found that support tool use."),
+        ("tool", 400, "registry.ollama.ai/library/x does not support tools"),
+        ("tool", 400, ""),
+        ("tool", 422, "Unprocessable Entity"),
+        ("pictures", 404, "No endpoints found that support image input"),
+        ("pictures", 400, "messages[0]: unknown variant `image_url`, expected `text`"),
+        ("pictures", 422, "Input should be a valid string"),
+    ],
+)
+def test_an_error_about_the_feature_is_an_answer(question: str, status: int, words: str) -> None:
+    with FakeProvider(Shaky(question, fault(status, words), 99)) as server:
+        found = probe(server.uri(), QUICK)
+    refused = found.tools if question == "tool" else found.pictures
+    assert refused == Support.REFUSED
+    assert found.is_complete
+
+
+def test_what_was_found_is_stored_for_the_next_time() -> None:
     brain = Brain(tools="400")
     with FakeProvider(brain) as server:
         first = create_model(server.uri(), QUICK)

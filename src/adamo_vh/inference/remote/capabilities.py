@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 
+_PROBE = 2
+"""Counts the ways of probing; what an earlier one found is asked anew."""
+
+
 class Support(StrEnum):
     """Whether something works."""
 
@@ -28,6 +32,9 @@ class Support(StrEnum):
     REFUSED = "refused"
     """The server answers with an error."""
     UNTESTED = "untested"
+    """It was not asked: something that it takes does not work."""
+    UNKNOWN = "unknown"
+    """It was asked, and no answer came; it will be asked again."""
 
 
 class ToolSupport(StrEnum):
@@ -39,6 +46,8 @@ class ToolSupport(StrEnum):
     NONE = "none"
     REFUSED = "refused"
     """The server answers with an error."""
+    UNKNOWN = "unknown"
+    """It was asked, and no answer came; it will be asked again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +55,8 @@ class Capabilities:
     """What a model that was reached can do."""
 
     uri: str
-    rung: Rung
-    """How it is best asked."""
+    rung: Rung | None
+    """How it is best asked; None if that hangs on a question that was not answered."""
     tools: ToolSupport
     schema: Support
     """Whether answers obey a JSON schema."""
@@ -65,6 +74,14 @@ class Capabilities:
     """Time that the probe took."""
     when: str = ""
     """Date and time of the probe, ISO 8601, UTC."""
+    unanswered: tuple[str, ...] = ()
+    """Why questions were not answered, a sentence each."""
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every question was answered."""
+        seen = (self.schema, self.pictures, self.result_pictures)
+        return self.tools is not ToolSupport.UNKNOWN and Support.UNKNOWN not in seen
 
 
 def load_capabilities(uri: str) -> Capabilities | None:
@@ -87,7 +104,7 @@ def save_capabilities(capabilities: Capabilities) -> None:
 
 
 def _file(uri: str) -> Path:
-    key = hashlib.sha256(f"{version('adamo-vh')} {uri}".encode()).hexdigest()[:16]
+    key = hashlib.sha256(f"{version('adamo-vh')} {_PROBE} {uri}".encode()).hexdigest()[:16]
     return cache_folder() / "models" / f"{key}.json"
 
 

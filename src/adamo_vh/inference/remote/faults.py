@@ -116,14 +116,16 @@ def _failed(status: int, body: Any, exchange: Exchange, *, hidden: bool = False)
     everything = f"{words} {body}"
     told = f"HTTP {exchange.status} with an error" if hidden else f"HTTP {status}"
     text = f"The server answered {told}: {_short(words)}"
+    said = _short(words)
     if status != 429 and _TOO_LONG.search(everything):
         text = f"The prompt is longer than the model's context. {text} Keep fewer steps in it."
-        return Failure(text, False)
+        return Failure(text, False, status=status, words=said)
     if fix := _FIXES.get(status):
         text = f"{text} {fix}"
     final = _PERMANENT.search(everything) or _is_out_of_credit(body, everything)
     retryable = (status in _RETRYABLE_STATUS or status >= 500) and not final
-    return Failure(text, retryable, _retry_after_s(exchange.headers, body))
+    waits = _retry_after_s(exchange.headers, body)
+    return Failure(text, retryable, waits, status=status, words=said)
 
 
 def _is_out_of_credit(body: Any, everything: str) -> bool:

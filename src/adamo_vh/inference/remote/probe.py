@@ -7,6 +7,7 @@ import io
 import json
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 
 from adamo_vh.action import ToolSchema
@@ -22,10 +23,11 @@ from adamo_vh.inference.messages import (
     TextPart,
     ToolMessage,
 )
-from adamo_vh.inference.model import Reply, Rung, Sampling, Usage
+from adamo_vh.inference.model import Ending, Reply, Rung, Sampling, Usage
 from adamo_vh.inference.prompts import render
 from adamo_vh.inference.remote.capabilities import Capabilities, Support, ToolSupport
 from adamo_vh.inference.remote.provider import ProviderModel
+from adamo_vh.inference.remote.refusals import Feature, refuses
 from adamo_vh.inference.remote.retry import RetryPolicy
 
 PROBE_RETRY = RetryPolicy(max_tries=3, max_wait_s=60.0, timeout_s=120.0)
@@ -58,20 +60,26 @@ LAMP = ToolSchema(
 """The tool that the probe offers."""
 
 
-def probe(uri: str, retry: RetryPolicy | None = None) -> Capabilities:
-    """Find out what a model can do; nothing is kept.
+def probe(
+    uri: str, retry: RetryPolicy | None = None, known: Capabilities | None = None
+) -> Capabilities:
+    """Find out what a model can do; nothing is stored.
+
+    Only an answer is a verdict. A question that was not answered is asked once more at the end,
+    and then stays unknown.
 
     Args:
         uri: URI of a remote model.
         retry: Limits on trying again; by default short ones.
+        known: What an earlier probe found: only what is unknown in it is asked.
 
     Raises:
         ModelConfigError: The URI, the provider's package or its key is wrong or missing.
         ModelError: The model cannot be reached; names the fix.
     """
-    model = ProviderModel(uri, retry or PROBE_RETRY, seed=0)
+    model = ProviderModel(uri, retry or PROBE_RETRY, known.refused if known else (), seed=0)
     try:
-        return _Probe(model).run(model)
+        return _Probe(model, known).run(model)
     finally:
         model.close()
 
@@ -79,71 +87,98 @@ def probe(uri: str, retry: RetryPolicy | None = None) -> Capabilities:
 class _Probe:
     """The requests of one probe, and what they took."""
 
-    def __init__(self, model: Provider) -> None:
+    def __init__(self, model: Provider, known: Capabilities | None = None) -> None:
         self._model = model
-        self._requests = 0
-        self._usage = Usage()
+        self._tools = known.tools if known else ToolSupport.UNKNOWN
+        self._pictures = known.pictures if known else Support.UNKNOWN
+        self._results = known.result_pictures if known else Support.UNKNOWN
+        self._schema = known.schema if known else Support.UNKNOWN
+        self._called: tuple[Message, ...] | None = None
+        """The conversation up to a native call."""
+        self._why: dict[str, str] = {}
+        self._requests = known.requests if known else 0
+        self._usage = known.usage if known else Usage()
+        self._seconds = known.seconds if known else 0.0
         self._answers = False
 
     def run(self, model: ProviderModel) -> Capabilities:
-        """Ask everything, the most telling things first."""
+        """Ask all that is unknown, the most telling things first."""
         started = time.monotonic()
-        first, second = _colours(model.info.name)
-        pictures = self._sees_picture(first)
-        tools, called = self._calls_tool()
-        result_pictures = Support.UNTESTED
-        if called is not None and pictures is Support.YES:
-            result_pictures = self._sees_result(called, second)
-        schema = self._obeys_schema()
-        if tools is ToolSupport.REFUSED and schema is Support.REFUSED:
+        colours = _colours(model.info.name)
+        self._ask_unknown(*colours)
+        if not self._found(model, started).is_complete:
+            self._ask_unknown(*colours)
+        if self._tools is ToolSupport.REFUSED and self._schema is Support.REFUSED:
             self._must_answer()  # Else it was not these two that were refused.
+        return self._found(model, started)
+
+    def _found(self, model: ProviderModel, started: float) -> Capabilities:
         return Capabilities(
             model.info.name,
-            _rung(tools, schema),
-            tools,
-            schema,
-            pictures,
-            result_pictures,
+            _rung(self._tools, self._schema),
+            self._tools,
+            self._schema,
+            self._pictures,
+            self._results,
             tuple(sorted(model.refused)),
             self._requests,
             self._usage,
-            time.monotonic() - started,
+            self._seconds + time.monotonic() - started,
             datetime.now(UTC).isoformat(timespec="seconds"),
+            tuple(self._why.values()),
         )
+
+    def _ask_unknown(self, first: tuple[str, str], second: tuple[str, str]) -> None:
+        if self._pictures is Support.UNKNOWN:
+            self._pictures = self._sees_picture(first)
+        if self._tools is ToolSupport.UNKNOWN:
+            self._tools = self._calls_tool()
+        if self._results is Support.UNKNOWN:
+            self._results = self._sees_result(second)
+        if self._schema is Support.UNKNOWN:
+            self._schema = self._obeys_schema()
 
     def _sees_picture(self, colours: tuple[str, str]) -> Support:
         question = HumanMessage((_text("colours"), two_colours(*colours)))
-        reply = self._ask([question])
-        return Support.REFUSED if reply is None else _named(reply.message.text, colours)
+        reply = self._ask(Feature.PICTURES, [question])
+        return reply if isinstance(reply, Support) else _named(reply.message.text, colours)
 
-    def _calls_tool(self) -> tuple[ToolSupport, tuple[Message, ...] | None]:
-        """Whether it calls a tool, and the conversation up to the call, if it was native."""
+    def _calls_tool(self) -> ToolSupport:
+        """Whether it calls a tool; the conversation up to a native call is remembered."""
         question = HumanMessage((_text("tool"),))
-        reply = self._ask([question], [LAMP])
-        if reply is None:
-            return ToolSupport.REFUSED, None
+        reply = self._ask(Feature.TOOLS, [question], [LAMP])
+        if isinstance(reply, Support):
+            return ToolSupport(reply.value)
         called = [call for call in reply.message.calls if call.name == LAMP.name]
         if not called or called[0].arguments is None:
-            return ToolSupport.NONE, None
+            return ToolSupport.NONE
         if reply.rung is Rung.LEAKED:
-            return ToolSupport.LEAKED, None
-        said = AIMessage(reply.message.text, (called[0],), reply.message.kept)
-        return ToolSupport.NATIVE, (question, said)
+            return ToolSupport.LEAKED
+        self._called = (question, replace(reply.message, calls=(called[0],)))
+        return ToolSupport.NATIVE
 
-    def _sees_result(self, called: tuple[Message, ...], colours: tuple[str, str]) -> Support:
-        said = called[-1]
+    def _sees_result(self, colours: tuple[str, str]) -> Support:
+        if Support.UNKNOWN in (self._pictures, self._tools.value):
+            return Support.UNKNOWN
+        if self._pictures is not Support.YES or self._tools is not ToolSupport.NATIVE:
+            return Support.UNTESTED
+        if self._called is None:
+            self._calls_tool()
+        if self._called is None:
+            return Support.UNKNOWN
+        *_, said = self._called
         assert isinstance(said, AIMessage)
-        result = ToolMessage(
-            said.calls[0].id, LAMP.name, _text("result").text, (two_colours(*colours),)
-        )
-        reply = self._ask([*called, result], [LAMP])
-        return Support.REFUSED if reply is None else _named(reply.message.text, colours)
+        picture = two_colours(*colours)
+        result = ToolMessage(said.calls[0].id, LAMP.name, _text("result").text, (picture,))
+        reply = self._ask(Feature.PICTURES, [*self._called, result], [LAMP], results=True)
+        return reply if isinstance(reply, Support) else _named(reply.message.text, colours)
 
     def _obeys_schema(self) -> Support:
         # The question says nothing of JSON: only a server that holds the model to it gives it.
-        reply = self._ask([HumanMessage((_text("schema"),))], schema=JsonForm().schema([LAMP]))
-        if reply is None:
-            return Support.REFUSED
+        question = [HumanMessage((_text("schema"),))]
+        reply = self._ask(Feature.SCHEMA, question, schema=JsonForm().schema([LAMP]))
+        if isinstance(reply, Support):
+            return reply
         try:
             json.loads(reply.message.text)
         except (ValueError, RecursionError):
@@ -161,11 +196,16 @@ class _Probe:
 
     def _ask(
         self,
+        feature: Feature,
         messages: Sequence[Message],
         tools: Sequence[ToolSchema] = (),
         schema: ToolSchema | None = None,
-    ) -> Reply | None:
-        """The reply, or None if the request was refused."""
+        *,
+        results: bool = False,
+    ) -> Reply | Support:
+        """The reply; `REFUSED` if the server does not take the feature, `UNKNOWN` if none came."""
+        what = f"{feature} in results" if results else str(feature)
+        self._why.pop(what, None)
         try:
             reply = self._model.complete(messages, tools, _SAMPLING, schema=schema)
         except ProviderError as error:
@@ -173,14 +213,28 @@ class _Probe:
             # A server may report as a fault of its own what it does not know, and may be down.
             if not (self._answers and isinstance(error, RefusedError)):
                 self._must_answer()
-            return None
+            if refuses(feature, error):
+                return Support.REFUSED
+            self._why[what] = f"{what}: {error}"
+            return Support.UNKNOWN
         self._count(reply)
+        if reply.ending in _NO_VERDICT:
+            self._why[what] = f"{what}: the reply was {_NO_VERDICT[reply.ending]}."
+            return Support.UNKNOWN
         return reply
 
     def _count(self, reply: Reply) -> None:
         self._requests += reply.requests
         self._usage += reply.usage
         self._answers = True
+
+
+_NO_VERDICT = {
+    Ending.CUT_OFF: "cut off before its end",
+    Ending.EMPTY: "empty",
+    Ending.FILTERED: "stopped by a filter",
+}
+"""Replies that tell nothing of what a model can do."""
 
 
 def two_colours(left: str, right: str) -> ImagePart:
@@ -208,11 +262,13 @@ def _named(text: str, colours: tuple[str, str]) -> Support:
     return Support.YES if tuple(named[:2]) == colours else Support.NO
 
 
-def _rung(tools: ToolSupport, schema: Support) -> Rung:
+def _rung(tools: ToolSupport, schema: Support) -> Rung | None:
     if tools is ToolSupport.NATIVE:
         return Rung.NATIVE
     if tools is ToolSupport.LEAKED:
         return Rung.LEAKED
+    if tools is ToolSupport.UNKNOWN or schema is Support.UNKNOWN:
+        return None
     return Rung.SCHEMA if schema is Support.YES else Rung.REACT
 
 

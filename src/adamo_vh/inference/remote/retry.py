@@ -59,6 +59,10 @@ class Failure:
     """Seconds that the server asked to wait."""
     refused: str = ""
     """Setting that the server refuses by name; empty if it complains of something else."""
+    status: int | None = None
+    """HTTP status that it comes to; None if nothing was answered."""
+    words: str = ""
+    """The server's own words; free of secrets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,12 +103,13 @@ def run_with_retries(
         if adapt(outcome):
             continue
         if not outcome.retryable:
-            raise RefusedError(f"{name}: {outcome.text}")
+            raise RefusedError(f"{name}: {outcome.text}", outcome.status, outcome.words)
         failures += 1
         lost_s = time.monotonic() - begin
         pause_s = policy.pause_s(failures, outcome.retry_after_s)
         if failures == policy.max_tries or lost_s + pause_s > policy.max_wait_s:
-            raise ProviderError(f"{name}: {_last_words(policy, outcome, failures, lost_s)}")
+            text = f"{name}: {_last_words(policy, outcome, failures, lost_s)}"
+            raise ProviderError(text, outcome.status, outcome.words)
         time.sleep(pause_s)
 
 
