@@ -22,7 +22,7 @@ from adamo_vh.inference.messages import ImagePart
 
 WOOD = (70, 105, 140)
 BODY = Body(Vec3(-2.0, -1.0, 0.0), 0.0, Vec3(0.0, -1.0, 0.8), "empty")
-CAMERA = Camera(Vec3(-1.92, -1.0, 1.6), 0.0, math.atan2(-0.8, 1.92), math.radians(65), 1280, 720)
+CAMERA = Camera(Vec3(-1.92, -1.0, 1.6), 0.0, math.atan2(-0.8, 1.92), math.radians(74), 1280, 720)
 BGR = {
     "red": (30, 30, 200),
     "orange": (20, 110, 230),
@@ -130,7 +130,7 @@ def test_the_camera_follows_from_the_text():
     things = [listed(str(n), place, 10) for n, place in enumerate(places)]
     camera = camera_of(prompt(picture(), things))
     assert camera is not None
-    assert math.degrees(camera.fov_y_rad) == pytest.approx(65, abs=1.5)
+    assert math.degrees(camera.fov_y_rad) == pytest.approx(74, abs=1.5)
 
 
 @pytest.mark.parametrize("name", ["Plate", "PeanutButter", "WineBottle", "Screwdriver"])

@@ -13,7 +13,7 @@ from adamo_vh.inference.baseline.mind.placing import place_reached, place_words
 from adamo_vh.inference.baseline.prompt.reading import Event, Prompt, Room
 from adamo_vh.inference.baseline.prompt.state_text import Body
 
-MAX_TRIES = 4
+MAX_TRIES = 5
 """Failed picks and drops of one thing, after which it is given up."""
 FAR_M = 2.6
 """From farther away, small things and looks are not told reliably."""
