@@ -37,7 +37,15 @@ class FileError(AdamoError):
 
 
 class SceneError(AdamoError):
-    """A scene file is wrong."""
+    """A scene file is wrong.
+
+    Attributes:
+        faults: Everything that is wrong with it: the field, and the problem with its fix.
+    """
+
+    def __init__(self, text: str, faults: tuple[tuple[str, str], ...] = ()) -> None:
+        super().__init__(text)
+        self.faults = faults or (("file", text),)
 
 
 class InvalidActionError(AdamoError):

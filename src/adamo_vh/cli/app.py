@@ -7,10 +7,12 @@ from typing import Annotated
 
 import typer
 
+from adamo_vh.cli.exits import listed
+
 app = typer.Typer(
     help="Give a vision-language model a body in a 3D room, and measure why it succeeds or fails.",
+    epilog=listed(),
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 tasks_app = typer.Typer(help="The benchmark's tasks.", invoke_without_command=True)
@@ -19,6 +21,8 @@ scenes_app = typer.Typer(help="The scenes, built-in and own.", invoke_without_co
 app.add_typer(scenes_app, name="scenes")
 models_app = typer.Typer(help="The models.", no_args_is_help=True)
 app.add_typer(models_app, name="models")
+cache_app = typer.Typer(help="What is kept to be faster.", invoke_without_command=True)
+app.add_typer(cache_app, name="cache")
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]
@@ -45,6 +49,28 @@ Record = Annotated[
 RunFolder = Annotated[
     Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
 ]
+
+
+def _tell_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        from adamo_vh.cli.terminal import say
+
+        say(f"adamo-vh {version('adamo-vh')}")
+        raise typer.Exit
+
+
+@app.callback()
+def adamo(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Say which version it is.", callback=_tell_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
+    """Give a vision-language model a body in a 3D room, and measure why it succeeds or fails."""
 
 
 @app.command()
@@ -166,9 +192,10 @@ def replay(
 @app.command()
 def report(run_dir: Annotated[Path, typer.Argument(help="A run folder.")]) -> None:
     """Write the page of a recorded episode again."""
+    from adamo_vh.cli.terminal import say
     from adamo_vh.report.page import write_page
 
-    typer.echo(write_page(run_dir))
+    say(write_page(run_dir))
 
 
 @tasks_app.callback()
@@ -245,6 +272,23 @@ def doctor(json: Json = False) -> None:
     from adamo_vh.cli.doctor import examine
 
     examine(as_json=json)
+
+
+@cache_app.callback()
+def cache(context: typer.Context, json: Json = False) -> None:
+    """Say where the cache is and what it holds."""
+    if context.invoked_subcommand is None:
+        from adamo_vh.cli.cache import show
+
+        show(as_json=json)
+
+
+@cache_app.command("clear")
+def cache_clear(json: Json = False) -> None:
+    """Remove what the cache holds; it is made again when it is needed."""
+    from adamo_vh.cli.cache import clear
+
+    clear(as_json=json)
 
 
 @app.command("figure")

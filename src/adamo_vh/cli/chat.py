@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
+import sys
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+import typer
 from rich.console import Console
 
 from adamo_vh.cli.episode import run_folder
+from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.progress import Progress
+from adamo_vh.cli.terminal import is_text, line, say
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.episode.result import EpisodeConfig
 from adamo_vh.perception import Labeling
+from adamo_vh.readable import readable
 from adamo_vh.record.trajectory import Ended
 from adamo_vh.session.chat import ChatSession
 from adamo_vh.session.episode import chosen_profile, member
+
+_LEAVE = ("quit", "exit", "/quit", "/exit", "/q")
+_ASK = ("/help", "/?", "help", "?")
+_GREETING = "Say what to do, in plain words. /help says more; /quit or Ctrl+D leaves."
+_HELP = """\
+Say what to do: "Put the plate on the floor". World and memory stay from one line to the next.
+  /help           this
+  /quit, Ctrl+D   leave; so do quit, exit and /exit. The conversation can be gone on with.
+  Ctrl+C          stop what is being done, and leave"""
 
 
 def talk(
@@ -33,15 +47,17 @@ def talk(
     console = Console()
     observers = (Progress(console),)
     guards = (BudgetGuard(Budget(), Ledger(), budget),)
+    say(_GREETING, "dim")
+    heard = _Ear(console)
     with ExitStack() as stack:
+        first = None
         if resume is not None:
-            console.print(f"Going back to where {resume} was left ...", style="dim")
+            say(f"Going back to where {resume} was left ...", "dim")
             session = ChatSession.resume(resume, guards=guards, observers=observers)
-            first = None
         else:
-            first = _ask(console)
+            first = heard.next()
             if first is None:
-                return
+                raise typer.Exit(heard.code)
             config = EpisodeConfig(
                 instruction=first,
                 labeling=member(Labeling, labeling, "labeling"),
@@ -52,31 +68,56 @@ def talk(
             session = ChatSession.begin(
                 config, folder, record=record, guards=guards, observers=observers
             )
+        kept = f"Kept in {session.folder}; go on with: adamo-vh chat --resume {session.folder}"
+        stack.callback(say, kept)
         stack.enter_context(session)
-        said = first or _ask(console)
+        said = first or heard.next()
         while said is not None:
-            _answer(console, session.say(said))
-            said = _ask(console)
-    kept = f"Kept in {session.folder}; go on with: adamo-vh chat --resume {session.folder}"
-    console.print(kept, markup=False, highlight=False, soft_wrap=True)
+            _answer(session.say(said))
+            said = heard.next()
+    raise typer.Exit(heard.code)
 
 
-def _ask(console: Console) -> str | None:
-    """The next instruction; None at the end of the conversation."""
-    try:
-        said = console.input("[bold]you[/bold]         ").strip()
-    except EOFError:
-        console.print()
+class _Ear:
+    """What the user says; what is meant for the terminal alone is answered here."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self.code = Exit.DONE
+        """How the command ends: a pipe that was not understood is told so."""
+
+    def next(self) -> str | None:
+        """The next instruction; None at the end of the conversation."""
+        while (said := self._line()) is not None:
+            word = said.lower()
+            if word in _LEAVE:
+                return None
+            if word in _ASK:
+                say(_HELP)
+            elif said.startswith("/"):
+                say(f"There is no {said.split()[0]}; /help lists what there is.", "yellow")
+            elif said:
+                return said
         return None
-    return None if said in ("", "/quit", "/exit") else said
+
+    def _line(self) -> str | None:
+        """A line as it may be kept and shown; empty if there is nothing in it."""
+        try:
+            said = self._console.input("[bold]you[/bold]         ")
+        except EOFError:
+            self._console.print()
+            return None
+        if is_text(said):
+            return readable(said).strip()
+        say("That was not UTF-8 text and is left out; set the terminal to UTF-8.", "yellow")
+        if not sys.stdin.isatty():
+            self.code = Exit.WRONG
+        return ""
 
 
-def _answer(console: Console, ended: Ended) -> None:
+def _answer(ended: Ended) -> None:
     if ended.answer:
-        console.print("[bold]agent[/bold]      ", end=" ")
-        console.print(ended.answer, markup=False, highlight=False, soft_wrap=True)
+        line("agent", ended.answer)
     else:
         why = f"; {ended.why}" if ended.why else ""
-        console.print(
-            f"(stopped: {ended.reason}{why})", style="yellow", markup=False, soft_wrap=True
-        )
+        say(f"(stopped: {ended.reason}{why})", "yellow")

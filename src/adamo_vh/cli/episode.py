@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from collections.abc import Iterator
@@ -15,7 +14,9 @@ from typing import Any
 import typer
 from rich.console import Console
 
+from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.progress import Progress
+from adamo_vh.cli.terminal import line, put_json, say
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.engine import World
@@ -63,11 +64,9 @@ def run_and_show(
 
 def _announce(ahead: Forecast, budget: Budget) -> None:
     """Say what an episode will take, and whether its budget is enough."""
-    console = Console()
-    console.print("[bold]forecast[/bold]   ", end=" ")
-    console.print(ahead.text(), markup=False, highlight=False, soft_wrap=True)
+    line("forecast", ahead.text())
     if warning := ahead.warns(budget):
-        console.print(warning, style="yellow", markup=False, highlight=False, soft_wrap=True)
+        say(warning, "yellow")
 
 
 @contextmanager
@@ -96,11 +95,11 @@ def resume_and_show(folder: Path, *, as_json: bool) -> None:
 
 def _show(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
     if as_json:
-        typer.echo(json.dumps(result_json(result)))
+        put_json(result_json(result))
     else:
-        _print_result(Console(), result, folder)
+        _print_result(result, folder)
     if not result.termination.is_scored:
-        raise typer.Exit(1)
+        raise typer.Exit(Exit.NO)
 
 
 def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
@@ -111,19 +110,19 @@ def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
     same = not report.mismatches
     if as_json:
         found = {"steps": report.steps, "same": same, "mismatches": report.mismatches}
-        typer.echo(json.dumps({**found, "frames_differ": report.frames_differ}))
+        put_json({**found, "frames_differ": report.frames_differ})
     elif same:
         frames = (
             "all frames equal"
             if not report.frames_differ
             else (f"{report.frames_differ} frames differ in bytes (another machine or driver)")
         )
-        typer.echo(f"Same: every state hash equal in {report.steps} steps; {frames}.")
+        say(f"Same: every state hash equal in {report.steps} steps; {frames}.")
     else:
-        for line in report.mismatches:
-            typer.echo(f"Different: {line}")
+        for mismatch in report.mismatches:
+            say(f"Different: {mismatch}")
     if not same:
-        raise typer.Exit(1)
+        raise typer.Exit(Exit.NO)
 
 
 def parse_resolution(text: str) -> tuple[int, int]:
@@ -172,7 +171,8 @@ def _mark_latest(folder: Path) -> None:
         RUNS.mkdir(exist_ok=True)
         half.symlink_to(os.path.relpath(folder, RUNS), target_is_directory=True)
         half.replace(RUNS / "latest")
-    half.unlink(missing_ok=True)
+    with suppress(OSError):
+        half.unlink()
 
 
 def result_json(result: EpisodeResult) -> dict[str, Any]:
@@ -216,12 +216,8 @@ def _accounts(result: EpisodeResult) -> str:
     return "; ".join(parts)
 
 
-def _print_result(console: Console, result: EpisodeResult, folder: Path) -> None:
-    def line(label: str, value: str) -> None:
-        console.print(f"[bold]{label:<11}[/bold]", end=" ")
-        console.print(value, markup=False, highlight=False, soft_wrap=True)
-
-    console.print()
+def _print_result(result: EpisodeResult, folder: Path) -> None:
+    say("")
     broken = result.termination is TerminationReason.BROKEN
     line("fault" if broken else "answer", result.answer or f"(none: {result.termination})")
     if result.completion is not None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from datetime import datetime
 
 import typer
-from rich.console import Console
 
+from adamo_vh.cli.exits import Exit
+from adamo_vh.cli.terminal import marked, put_json, say
 from adamo_vh.errors import ModelConfigError, ModelError
 from adamo_vh.inference.model import Rung
 from adamo_vh.inference.registry import create_local_model, probe_and_save
@@ -86,10 +86,9 @@ def check(uri: str, *, refresh: bool, as_json: bool) -> None:
         raise
     except ModelError as error:
         _show_unreached(uri, str(error), as_json=as_json)
-        raise typer.Exit(1) from None
+        raise typer.Exit(Exit.NO) from None
     if as_json:
-        facts = {"reachable": True, "cached": cached, **asdict(found)}
-        typer.echo(json.dumps(facts))
+        put_json({"reachable": True, "cached": cached, **asdict(found)})
         return
     _show([*_lines(found)])
     _show_cost(found, cached=cached)
@@ -132,19 +131,14 @@ _COLOURS = {"ok": "green", "no": "yellow", "?": "yellow", "--": "dim", "FAIL": "
 
 
 def _show(lines: list[_Line]) -> None:
-    console = Console()
     for line in lines:
-        colour = _COLOURS[line.mark]
-        console.print(f"[{colour}]{line.mark:<4}[/] [bold]{line.what:<19}[/bold]", end=" ")
-        console.print(line.found, markup=False, highlight=False, soft_wrap=True)
-        if line.fix:
-            console.print(f"     fix: {line.fix}", markup=False, highlight=False, soft_wrap=True)
+        marked(line.mark, _COLOURS[line.mark], f"{line.what:<19}", line.found, line.fix)
 
 
 def _show_cost(found: Capabilities, *, cached: bool) -> None:
     when = datetime.fromisoformat(found.when).strftime("%Y-%m-%d %H:%M UTC")
     again = "; --refresh asks again" if cached else ""
-    typer.echo(
+    say(
         f"     {found.requests} requests, {found.usage.total_tokens} tokens, "
         f"{found.seconds:.1f} s on {when}{again}"
     )
@@ -152,13 +146,13 @@ def _show_cost(found: Capabilities, *, cached: bool) -> None:
 
 def _show_unreached(uri: str, error: str, *, as_json: bool) -> None:
     if as_json:
-        typer.echo(json.dumps({"reachable": False, "uri": uri, "error": error}))
+        put_json({"reachable": False, "uri": uri, "error": error})
     else:
         _show([_Line("FAIL", "reachable", error)])
 
 
 def _show_local(uri: str, kind: str, *, as_json: bool) -> None:
     if as_json:
-        typer.echo(json.dumps({"reachable": True, "uri": uri, "kind": kind}))
+        put_json({"reachable": True, "uri": uri, "kind": kind})
     else:
         _show([_Line("ok", "reachable", f"{uri} ({kind}) needs no server: nothing to check")])

@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any
-from unicodedata import category
 
 from rich.console import Console
-from rich.text import Text
 
 from adamo_vh.action import Outcome
+from adamo_vh.cli.terminal import line
 from adamo_vh.cognition.profile import Profile
 from adamo_vh.cognition.turns import read_turn
 from adamo_vh.observation import Frame
@@ -112,10 +111,7 @@ class Progress:
         self._wishes, self._said = (), ""
 
     def _line(self, label: str, text: str, style: str) -> None:
-        # What a model says must not steer the terminal, nor be impossible to print.
-        line = "".join(c for c in " ".join(text.split()) if category(c) not in ("Cc", "Cs"))
-        words = Text(line, style)
-        self._console.print(Text(f"{label:<11} ", "bold") + words, soft_wrap=True)
+        line(label, " ".join(text.split()), style, console=self._console)
 
 
 def _spelt(wish: Wish) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import io
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +11,10 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from adamo_vh.cli.exits import Exit
+from adamo_vh.cli.terminal import put_json, say
 from adamo_vh.errors import SceneError
+from adamo_vh.files import write_whole
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.scenes import Scene, load_scene, scene_names
 
@@ -33,7 +36,7 @@ def list_scenes(*, as_json: bool) -> None:
             }
             for scene in found
         ]
-        typer.echo(json.dumps({"scenes": rows}))
+        put_json({"scenes": rows})
         return
     table = Table("scene", "title", "objects", "furniture", "areas")
     for scene in found:
@@ -56,15 +59,16 @@ def check(file: str, out: Path | None, *, as_json: bool) -> None:
     if as_json:
         rows = [asdict(finding) for finding in findings]
         paths = [str(path) for path in pictures]
-        typer.echo(json.dumps({"scene": name, "ok": ok, "findings": rows, "pictures": paths}))
+        put_json({"scene": name, "ok": ok, "findings": rows, "pictures": paths})
     else:
         for finding in findings:
-            typer.echo(f"{finding.severity}: {finding.where}: {finding.problem}; {finding.fix}")
-        typer.echo(f"{name}: {'sound' if ok else 'not sound'}")
+            told = (finding.problem, finding.fix) if finding.fix else (finding.problem,)
+            say(f"{finding.severity}: {finding.where}: {'; '.join(told)}")
+        say(f"{name}: {'sound' if ok else 'not sound'}")
         for path in pictures:
-            typer.echo(path)
+            say(path)
     if not ok:
-        raise typer.Exit(1)
+        raise typer.Exit(Exit.NO)
 
 
 def _inspected(file: str, out: Path | None) -> tuple[str, tuple[SceneFinding, ...], list[Path]]:
@@ -81,7 +85,7 @@ def _inspected(file: str, out: Path | None) -> tuple[str, tuple[SceneFinding, ..
     except SceneError as fault:
         if not Path(file).is_file():
             raise
-        return Path(file).stem, (_as_finding(fault, file),), []
+        return Path(file).stem, _as_findings(fault), []
     try:
         folder = out or Path(f"scene-{scene.name}")
         findings = inspect_scene(scene, engine)
@@ -90,14 +94,12 @@ def _inspected(file: str, out: Path | None) -> tuple[str, tuple[SceneFinding, ..
         engine.close()
 
 
-def _as_finding(fault: SceneError, file: str) -> SceneFinding:
-    from adamo_vh.runtime.inspection.finding import error
+def _as_findings(fault: SceneError) -> tuple[SceneFinding, ...]:
+    """Everything that is wrong with a file that cannot be read as a scene."""
+    from adamo_vh.runtime.inspection.finding import bounded, error
 
-    told = str(fault).removeprefix(f"{file}: ")
-    where, _, problem = told.partition(": ")
-    if not problem or " " in where:
-        where, problem = "file", told
-    return error(where, problem, "correct it in the file", blocks=True)
+    found = (error(where, problem, "", blocks=True) for where, problem in fault.faults)
+    return tuple(bounded(found))
 
 
 def show(file: str, out: Path | None) -> None:
@@ -105,7 +107,7 @@ def show(file: str, out: Path | None) -> None:
     scene = load_scene(file)
     engine = BuiltinEngine(scene)
     for path in _draw(scene, engine, out or Path(f"scene-{scene.name}"), None):
-        typer.echo(path)
+        say(path)
     engine.close()
 
 
@@ -116,7 +118,6 @@ def _draw(
 
     from adamo_vh.runtime.inspection.checks import cameras
 
-    folder.mkdir(parents=True, exist_ok=True)
     engine.reset(0)
     chosen = cameras(scene, engine)
     written = []
@@ -124,6 +125,7 @@ def _draw(
         outside = chosen.get(name)
         view = engine.view(outside) if outside else engine.capture(1920, 1080)
         path = folder / f"{name}.png"
-        Image.fromarray(view.rgb).save(path)
-        written.append(path)
+        picture = io.BytesIO()
+        Image.fromarray(view.rgb).save(picture, "png")
+        written.append(write_whole(path, picture.getvalue()))
     return written

@@ -7,8 +7,7 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
+from adamo_vh.cli.terminal import say
 from adamo_vh.model_server.model_serving import serve_model
 
 if TYPE_CHECKING:
@@ -26,13 +25,14 @@ def serve(model: str, host: str, port: int, faults: Path | None, *, tools: bool)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     with serve_model(model, port, host=host, tools=tools, faults=faults, watch=_tell) as served:
-        typer.echo(f"{served.name} at {served.base_url}")
-        typer.echo(f"try    adamo-vh run --task T1 --model {served.uri}")
-        typer.echo("stop   Ctrl+C")
+        say(f"{served.name} at {served.base_url}")
+        say(f"try    adamo-vh run --task T1 --model {served.uri}")
+        say("stop   Ctrl+C")
         stop.wait()
-    typer.echo("stopped")
+    say("stopped")
 
 
 def _tell(served: Served) -> None:
     status = str(served.status) if served.status else "cut"
-    typer.echo(f"{served.number:5d}  {status:>3}  {served.text}")
+    # A client's words stay on the line of their request.
+    say(f"{served.number:5d}  {status:>3}  {' '.join(served.text.split())}")

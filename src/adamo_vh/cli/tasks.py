@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 
 import typer
@@ -10,6 +9,8 @@ from rich.console import Console
 from rich.table import Table
 
 from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.cli.exits import Exit
+from adamo_vh.cli.terminal import put_json, say
 from adamo_vh.perception import Labeling
 
 
@@ -28,7 +29,7 @@ def list_tasks(*, as_json: bool) -> None:
             }
             for task in TASKS
         ]
-        typer.echo(json.dumps({"tasks": rows}))
+        put_json({"tasks": rows})
         return
     table = Table("task", "prompt", "ACT", "REF", "REL", "C-D", "printed", "conditions")
     for task in TASKS:
@@ -60,12 +61,12 @@ def verify(scene: str | None, *, as_json: bool) -> None:
                 rows.append(row)
                 if not as_json:
                     mark = "ok  " if row.is_sound else "FAIL"
-                    typer.echo(
+                    say(
                         f"{mark} {row.scene} {row.labeling:<4} {row.task:<3} oracle "
                         f"{row.oracle:.2f} strict {row.oracle_strict:.0f} idle {row.idle:.2f}"
                     )
         engine.close()
     if as_json:
-        typer.echo(json.dumps({"tasks": [asdict(row) for row in rows]}))
+        put_json({"tasks": [asdict(row) for row in rows]})
     if not all(row.is_sound for row in rows):
-        raise typer.Exit(1)
+        raise typer.Exit(Exit.NO)

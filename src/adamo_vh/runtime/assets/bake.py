@@ -1,15 +1,18 @@
 """Keep built assets on disk, so that only the first run pays for the modelling.
 
-Its key covers the sources of
-the assets and the libraries they are made with: a change of either builds anew.
+A set's key covers the sources of the assets and the libraries they are made with: a change of
+either builds anew, and removes the sets that no running process uses.
 """
 
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import hashlib
 import io
 import json
+import re
+import shutil
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -17,7 +20,7 @@ from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -28,6 +31,8 @@ from adamo_vh.runtime.assets.asset import Asset, Collider, Looks, Material, Part
 
 _LIBRARIES = ("manifold3d", "numpy", "pillow", "scipy", "trimesh")
 _MESH_ARRAYS = ("vertices", "normals", "uvs", "faces")
+_SET = re.compile(r"[0-9a-f]{16}")
+_LOCK = "in-use.lock"
 _DAMAGE = (
     OSError,
     EOFError,
@@ -64,11 +69,13 @@ def load_built(name: str, build: Callable[[], Asset]) -> Asset:
         build: Makes it.
     """
     path = cache_file(name)
+    _hold(path.parent)
     with contextlib.suppress(*_DAMAGE):
         return _read(path)
     asset = build()
     with contextlib.suppress(FileError):
         _write(asset, path)
+        _remove_old_sets(path.parent)
     return asset
 
 
@@ -89,6 +96,28 @@ def _key() -> str:
     for library in _LIBRARIES:
         digest.update(f"{library} {version(library)}".encode())
     return digest.hexdigest()[:16]
+
+
+@cache
+def _hold(folder: Path) -> IO[bytes] | None:
+    """Show other processes, as long as this one lives, that a set is in use."""
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+        file = (folder / _LOCK).open("ab")
+        fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        return file
+    return None
+
+
+@cache
+def _remove_old_sets(current: Path) -> None:
+    """Remove what earlier versions baked, unless a process that runs now still uses it."""
+    for folder in current.parent.iterdir():
+        if folder == current or not _SET.fullmatch(folder.name) or folder.is_symlink():
+            continue
+        with contextlib.suppress(OSError), (folder / _LOCK).open("ab") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            shutil.rmtree(folder)
 
 
 def _write(asset: Asset, path: Path) -> None:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from adamo_vh.files import write_whole
 from adamo_vh.geometry import Array
 from adamo_vh.runtime.assets.asset import Material
 from adamo_vh.runtime.human.clips import Clip
@@ -106,7 +107,7 @@ def write_glb(path: Path, figure: Figure, clips: Iterable[Clip] = ()) -> None:
     writer.json["scenes"] = [{"name": figure.variant, "nodes": roots}]
     for clip in clips:
         _add_clip(writer, clip)
-    path.write_bytes(writer.file())
+    write_whole(path, writer.file())
 
 
 def joint_node(joint: int) -> int:

@@ -18,15 +18,16 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 from adamo_vh.engine import Area, SceneInfo
 from adamo_vh.errors import FileError, SceneError
 from adamo_vh.files import parse_toml, read_text
+from adamo_vh.runtime.scenes.faults import field_faults
 
 _STRICT = ConfigDict(extra="forbid")
 _ROOM_M = (1.0, 20.0)
 """Least and largest side of a room: nothing farther than 20 m from the eyes is drawn."""
 
-Metres = Annotated[float, Field(ge=-50, le=50, allow_inf_nan=False)]
+Metres = Annotated[float, Field(strict=True, ge=-50, le=50, allow_inf_nan=False)]
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[A-Za-z0-9][A-Za-z0-9 _-]*$")]
-Degrees = Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)]
-Unit = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+Degrees = Annotated[float, Field(strict=True, ge=-360, le=360, allow_inf_nan=False)]
+Unit = Annotated[float, Field(strict=True, ge=0, le=1, allow_inf_nan=False)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ class Room:
     x_max: Metres
     y_min: Metres
     y_max: Metres
-    height_m: Annotated[float, Field(gt=1.8, le=20)]
+    height_m: Annotated[float, Field(strict=True, gt=1.8, le=20)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +64,7 @@ class Light:
     position: tuple[Metres, Metres, Metres]
     target: tuple[Metres, Metres, Metres]
     diffuse: Unit
-    shadow: bool = False
+    shadow: Annotated[bool, Field(strict=True)] = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,9 +85,9 @@ class PlacedObject:
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
 
-    id: Annotated[int, Field(ge=0, le=9999)]
+    id: Annotated[int, Field(strict=True, ge=0, le=9999)]
     asset: Name
-    on: str
+    on: Annotated[str, Field(max_length=130)]
     """Furniture name, "furniture/level" where it has several levels, or "floor"."""
     position: tuple[Metres, Metres]
     yaw_deg: Degrees = 0.0
@@ -111,7 +112,7 @@ class Scene:
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
 
     name: Name
-    title: str
+    title: Annotated[str, Field(max_length=200)]
     room: Room
     agent: AgentStart
     lights: Annotated[tuple[Light, ...], Field(min_length=1, max_length=6)]
@@ -165,7 +166,7 @@ def parse_scene(text: str, source: str) -> Scene:
         source: File name for error messages.
 
     Raises:
-        SceneError: Names the source, the field and the fix.
+        SceneError: Names the source, the field and the fix; its `faults` are all that is wrong.
     """
     try:
         data = parse_toml(text, source)
@@ -174,28 +175,26 @@ def parse_scene(text: str, source: str) -> Scene:
     try:
         scene = TypeAdapter(Scene).validate_python(data)
     except ValidationError as error:
-        first = error.errors()[0]
-        where = "".join(f"[{p}]" if isinstance(p, int) else f".{p}" for p in first["loc"])
-        raise SceneError(f"{source}: {where.lstrip('.')}: {first['msg']}") from None
-    _check(scene, source)
-    return scene
+        faults = field_faults(error)
+    else:
+        faults = (*_unroomy(scene.room), *_misnamed(scene))
+        if not faults:
+            faults = tuple(_misplaced(scene))
+        if not faults:
+            return scene
+    (where, problem), more = faults[0], len(faults) - 1
+    others = f" ({more} more: see adamo-vh scenes check)" if more else ""
+    raise SceneError(f"{source}: {where}: {problem}{others}", faults)
 
 
-def _check(scene: Scene, source: str) -> None:
-    """What the types alone cannot say."""
-    room = scene.room
+def _unroomy(room: Room) -> Iterator[tuple[str, str]]:
+    """A room with sides that no room has."""
     sides = room.x_max - room.x_min, room.y_max - room.y_min
     if min(sides) < _ROOM_M[0]:
-        raise SceneError(
-            f"{source}: room: smaller than 1 x 1 m; check x_min < x_max, y_min < y_max"
-        )
-    if max(sides) > _ROOM_M[1]:
-        raise SceneError(
-            f"{source}: room: {sides[0]:g} x {sides[1]:g} m is too large; "
-            f"make no side longer than {_ROOM_M[1]:g} m"
-        )
-    for where, problem in (*_misplaced(scene), *_misnamed(scene)):
-        raise SceneError(f"{source}: {where}: {problem}")
+        yield "room", "smaller than 1 x 1 m; check x_min < x_max, y_min < y_max"
+    elif max(sides) > _ROOM_M[1]:
+        size, most = f"{sides[0]:g} x {sides[1]:g} m", f"{_ROOM_M[1]:g} m"
+        yield "room", f"{size} is too large; make no side longer than {most}"
 
 
 def _misplaced(scene: Scene) -> Iterator[tuple[str, str]]:
