@@ -10,6 +10,7 @@ import base64
 import hashlib
 import math
 import re
+import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,7 @@ from adamo_vh.episode.result import (
     read_result,
     total_cost,
 )
+from adamo_vh.errors import AdamoError
 from adamo_vh.files import write_whole
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.model import Usage
@@ -109,6 +111,16 @@ def write_page(folder: Path) -> Path:
         lambda name: (folder / FRAMES / name).read_bytes(),
     )
     return write_whole(folder / PAGE, page.encode("utf-8", "xmlcharrefreplace"))
+
+
+def try_page(folder: Path) -> None:
+    """Draw the page of a run folder; a fault is a warning, because no score is lost for a page."""
+    try:
+        write_page(folder)
+    except Exception as error:
+        reason = f"{error}" if isinstance(error, AdamoError) else f"{type(error).__name__}: {error}"
+        again = f"once that is mended: adamo-vh report {folder}"
+        warnings.warn(f"the page is not drawn: {reason} ({again})", stacklevel=2)
 
 
 def render_page(

@@ -15,7 +15,7 @@ from adamo_vh.observation import Frame
 from adamo_vh.record.run_folder import MANIFEST, FolderLock, check_unused
 from adamo_vh.record.trajectory import Ended, Event, Observer
 from adamo_vh.record.writer import TrajectoryWriter
-from adamo_vh.report.page import write_page
+from adamo_vh.report.page import try_page
 from adamo_vh.session.engines import create_engine
 from adamo_vh.session.episode import create_agent, describe, read_unfinished, resumed_player
 from adamo_vh.session.players import create_player, fitting
@@ -138,7 +138,7 @@ class ChatSession:
         try:
             for instruction in recorded.instructions:
                 session._run(instruction)
-            write_page(path)
+            try_page(path)
         except BaseException:
             session.close()
             raise
@@ -147,7 +147,7 @@ class ChatSession:
     def say(self, instruction: str) -> Ended:
         """Have one instruction carried out; world and memory stay for the next one."""
         ended = self._run(instruction)
-        write_page(self.folder)
+        try_page(self.folder)
         return ended
 
     def _run(self, instruction: str) -> Ended:

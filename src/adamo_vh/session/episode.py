@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -28,7 +29,7 @@ from adamo_vh.episode.result import (
     summarise,
     write_record,
 )
-from adamo_vh.errors import ConfigError, RecordError
+from adamo_vh.errors import ConfigError, FileError, RecordError
 from adamo_vh.inference.model import Model, ModelKind, Sampling
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.inference.players.resumed import resumed
@@ -37,7 +38,7 @@ from adamo_vh.record.run_folder import EVENTS, MANIFEST, RESULT, FolderLock, che
 from adamo_vh.record.termination import Limits
 from adamo_vh.record.trajectory import Event, Observer, Trajectory, read_trajectory
 from adamo_vh.record.writer import TrajectoryWriter
-from adamo_vh.report.page import write_page
+from adamo_vh.report.page import try_page
 from adamo_vh.session.engines import create_engine, instructions, open_server
 from adamo_vh.session.forecasting import forecast_episodes
 from adamo_vh.session.players import create_player, fitting
@@ -224,9 +225,18 @@ def _play(
         raise writer.fault
     result = summarise(manifest, trajectory, engine.state(), folder)
     if folder is not None:
-        write_record(folder, RESULT, result)
-        write_page(folder)
+        _keep(folder, result)
     return result
+
+
+def _keep(folder: Path, result: EpisodeResult) -> None:
+    """Write what came of an episode; a full disk may take the files, never the score."""
+    try:
+        write_record(folder, RESULT, result)
+    except FileError as error:
+        again = f"once that is mended: adamo-vh run --resume {folder}"
+        warnings.warn(f"the result is not kept: {error} ({again})", stacklevel=2)
+    try_page(folder)
 
 
 def _instruction(instruction: str | None, task: str | None) -> str:
