@@ -21,9 +21,10 @@ from typing import Any
 
 from adamo_vh.action import parse
 from adamo_vh.action_server import LocalActionServer, execute_call
+from adamo_vh.action_server.soundness import state_faults, step_faults, view_faults
 from adamo_vh.errors import InvalidActionError
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.runtime.inspection.soundness import Soundness, step_faults, view_faults
+from adamo_vh.runtime.inspection.soundness import Soundness
 
 EPISODE_ACTIONS = 50
 RESOLUTION = (320, 180)
@@ -95,7 +96,7 @@ class RandomPlayer:
         tally.actions += 1
         tally.outcomes[f"{name[:8]} {result.feedback.code}"] += 1
         tally.milliseconds.setdefault(name[:8], []).append(taken)
-        faults = self._rules.state_faults(after)
+        faults = [*state_faults(after), *self._rules.faults(after)]
         try:
             action = parse(name, arguments, server.actions)
         except InvalidActionError:

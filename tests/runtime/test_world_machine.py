@@ -23,6 +23,7 @@ from PIL import Image
 
 from adamo_vh.action import Outcome, parse
 from adamo_vh.action_server import LocalActionServer, execute_call
+from adamo_vh.action_server.soundness import state_faults, step_faults, view_faults
 from adamo_vh.errors import InvalidActionError
 from adamo_vh.perception import (
     ImageFormat,
@@ -35,7 +36,7 @@ from adamo_vh.perception import (
 from adamo_vh.perception.plates import tag_colour
 from adamo_vh.perception.visibility import visible_objects
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.runtime.inspection.soundness import Soundness, step_faults, view_faults
+from adamo_vh.runtime.inspection.soundness import Soundness
 
 RESOLUTION = (320, 180)
 MARGIN_PX = 4
@@ -164,7 +165,8 @@ class WorldMachine(RuleBasedStateMachine):
 
     @invariant()
     def the_world_is_sound(self) -> None:
-        assert not self.sound.state_faults(self.engine.state())
+        state = self.engine.state()
+        assert not [*state_faults(state), *self.sound.faults(state)]
 
     def call(self, name: str, arguments: dict[str, Any] | None) -> str:
         """Make a call and compare the feedback with what happened; the hash of the state then."""
@@ -180,7 +182,7 @@ class WorldMachine(RuleBasedStateMachine):
             assert after.hash() == before.hash()
         else:
             assert not step_faults(before, after, action, result.feedback)
-        assert not self.sound.state_faults(after)
+        assert not [*state_faults(after), *self.sound.faults(after)]
         return result.state_hash
 
     def tag(self, thing: int) -> str:

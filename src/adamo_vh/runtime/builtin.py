@@ -105,7 +105,6 @@ class BuiltinEngine:
             EngineError: It cannot be done, or not now; nothing changed.
         """
         self._happenings.apply(event)
-        self.stage.forget()
 
     # --- pictures ---------------------------------------------------------------------------
 

@@ -87,8 +87,8 @@ class Stage:
             from_the_eyes: The camera is in the head, which must not hide the view.
         """
         shown = self.shown(body)
-        qpos = self._world.data.qpos.tobytes()
-        key = (camera, from_the_eyes, shown.body, self._moment is None, qpos)
+        world = self._world.data.qpos.tobytes(), self._world.model.light_diffuse.tobytes()
+        key = (camera, from_the_eyes, shown.body, self._moment is None, world)
         if self._moment is None and self._last is not None and self._last[0] == key:
             return self._last[1]
         percept = self._percept(shown, camera, head=not from_the_eyes, shadow=True)
