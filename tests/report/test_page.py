@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import math
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -13,12 +12,10 @@ from typing import Any
 
 import pytest
 from tests.run_folder import Recorder, config, played
-from tests.tabletop import tabletop
 
 from adamo_vh.action import Code, Feedback, Look, Outcome, Pick
 from adamo_vh.episode.result import write_record
 from adamo_vh.errors import RecordError
-from adamo_vh.geometry import Quaternion
 from adamo_vh.inference.messages import ToolCall
 from adamo_vh.record.run_folder import FRAMES, MANIFEST
 from adamo_vh.record.termination import TerminationReason
@@ -29,7 +26,6 @@ from adamo_vh.record.trajectory import (
     read_trajectory,
 )
 from adamo_vh.record.writer import TrajectoryWriter
-from adamo_vh.report.floor_plan import floor_plan
 from adamo_vh.report.page import PAGE, render_page, write_page
 from adamo_vh.report.timeline import CallText, turns
 
@@ -304,31 +300,3 @@ def test_calls_are_spelt_as_the_model_made_them() -> None:
     call = CallText.of("Drop", {"object": "Été_4", "x": 0.1, "y": -1, "deep": [None, True]})
     assert str(call) == 'Drop(object="Été_4", x=0.1, y=-1, deep=[null, true])'
     assert str(CallText.of("Drop", None, '{"object": ')) == 'Drop({"object": )'
-
-
-def test_the_floor_plan_measures_the_episode(tmp_path: Path) -> None:
-    run = played(tmp_path)
-    plan = floor_plan(run.manifest.initial, turns(read_trajectory(tmp_path)), run.world)
-    assert (plan.x, plan.y, plan.width, plan.height) == (-3.0, -3.0, 6.0, 8.0)
-    assert len(plan.objects) == 19
-    assert len(plan.areas) == 4
-    assert [surface.label for surface in plan.surfaces] == ["table"]
-    assert [stop.label for stop in plan.stops] == ["start", "1–4", "5"]
-    assert (plan.stops[0].x, plan.stops[0].y) == (-2.0, 1.0)  # y is turned over.
-    assert plan.path.count(" ") == 2
-    (move,) = plan.moves
-    assert move.title == "Tape_4: now on table"
-    assert move.start == (-0.174, 0.603)
-    assert (move.outline.x, move.outline.y) == (0.12, 1.25)
-
-
-def test_the_floor_plan_outlines_turned_boxes(tmp_path: Path) -> None:
-    world = tabletop()
-    item = world.object(5)
-    turned = replace(item, box=replace(item.box, orientation=Quaternion.from_yaw(math.pi / 2)))
-    plan = floor_plan(replace(world, objects=(turned,)), (), None)
-    (outline,) = plan.objects
-    xs, ys = zip(*(map(float, p.split(",")) for p in outline.points.split()), strict=True)
-    assert max(xs) - min(xs) == pytest.approx(item.box.size.y, abs=2e-3)
-    assert max(ys) - min(ys) == pytest.approx(item.box.size.x, abs=2e-3)
-    assert len(xs) == 4

@@ -1,99 +1,56 @@
 """The episode page: one HTML file that shows a whole episode and opens without a network.
 
-Notes, answers and feedback are what an untrusted model said: everything is escaped, and the page
-forbids itself every script but its own.
+Notes, answers and feedback are what an untrusted model said: everything is made readable and
+escaped, and the page forbids itself every script but its own.
 """
 
 from __future__ import annotations
 
 import base64
 import hashlib
-import math
+import os
 import re
 import warnings
-from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cache
-from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TypeVar
+
+from markupsafe import Markup
 
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.episode.result import (
+    EpisodeConfig,
     EpisodeResult,
     Manifest,
     read_manifest,
     read_result,
-    total_cost,
 )
-from adamo_vh.errors import AdamoError
+from adamo_vh.errors import AdamoError, FileError, RecordError
 from adamo_vh.files import write_whole
-from adamo_vh.geometry import Vec3
-from adamo_vh.inference.model import Usage
 from adamo_vh.perception import Labeling
 from adamo_vh.record.run_folder import FRAMES
-from adamo_vh.record.termination import Limits, TerminationReason
-from adamo_vh.record.trajectory import Ended, Thought, Trajectory, read_trajectory
-from adamo_vh.report.floor_plan import MARGIN_M, floor_plan
-from adamo_vh.report.timeline import turns
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from adamo_vh.record.trajectory import Ended, Trajectory, read_trajectory
+from adamo_vh.report.exchanges import exchanges
+from adamo_vh.report.floor_plan import FloorPlan, floor_plan
+from adamo_vh.report.summary import KINDS, Account, ending, verdict
+from adamo_vh.report.templating import environment, template_text
+from adamo_vh.report.timeline import Turn, turns
+from adamo_vh.report.whereabouts import followed
 
 PAGE = "episode.html"
 """Name of the page in a run folder."""
 
 _FRAME_NAME = re.compile(r"[0-9a-f]{8,64}\.(jpg|png)")
 """A recorded name must not lead out of the folder: what it names is put into the page."""
-_ENDINGS = {
-    TerminationReason.ANSWERED: ("ended", "Answered", "The model ended the episode."),
-    TerminationReason.EMPTY_REPLY: (
-        "truncated",
-        "Empty reply",
-        "The model said nothing, also after a reminder.",
-    ),
-    TerminationReason.PROTOCOL: (
-        "truncated",
-        "Unreadable",
-        "{limits.max_unreadable} answers in a row could not be read.",
-    ),
-    TerminationReason.LOOP: (
-        "truncated",
-        "Loop",
-        "Stopped: {limits.max_repeats} times the same call into the same state, or no call.",
-    ),
-    TerminationReason.BUDGET: (
-        "truncated",
-        "Budget",
-        "Stopped: the budget of the episode is used up.",
-    ),
-    TerminationReason.STEP_LIMIT: (
-        "truncated",
-        "Step limit",
-        "Stopped after {limits.max_steps} steps.",
-    ),
-    TerminationReason.TIME_LIMIT: (
-        "truncated",
-        "Time limit",
-        "Stopped after {limits.max_seconds:g} s.",
-    ),
-    TerminationReason.RUN_BUDGET: (
-        "broken",
-        "Unscored",
-        "The budget of the whole run was used up; the episode does not count.",
-    ),
-    TerminationReason.BROKEN: (
-        "broken",
-        "Unscored",
-        "The episode broke through a fault that is not the model's; it does not count.",
-    ),
-}
+_T = TypeVar("_T")
 _MEDIA_TYPE = {"jpg": "image/jpeg", "png": "image/png"}
 
 
 def write_page(folder: Path) -> Path:
     """Draw the page of a run folder, from its records alone; an old page is replaced.
+
+    A damaged record costs what it held and no more: the page shows the rest, the score above all,
+    and says in a line what is missing.
 
     Args:
         folder: The run folder; the episode may be unfinished.
@@ -103,12 +60,27 @@ def write_page(folder: Path) -> Path:
 
     Raises:
         RecordError: The folder holds no readable run.
+        FileError: The page cannot be written.
     """
+    missing: list[str] = []
+
+    def read(part: Callable[[Path], _T], otherwise: Callable[[], _T]) -> _T:
+        try:
+            return part(folder)
+        except (RecordError, FileError) as error:
+            # A page is passed on; where it was made is nobody's business.
+            line = str(error).replace(f"{folder}{os.sep}", "")
+            missing.append(line.replace(str(folder), "The folder"))
+            return otherwise()
+
+    result = read(read_result, lambda: None)
+    manifest = read_manifest(folder) if result is None else read(read_manifest, lambda: None)
     page = render_page(
-        read_manifest(folder),
-        read_trajectory(folder),
-        read_result(folder),
+        manifest or _recovered(result),
+        read(read_trajectory, Trajectory),
+        result,
         lambda name: (folder / FRAMES / name).read_bytes(),
+        missing,
     )
     return write_whole(folder / PAGE, page.encode("utf-8", "xmlcharrefreplace"))
 
@@ -123,11 +95,21 @@ def try_page(folder: Path) -> None:
         warnings.warn(f"the page is not drawn: {reason} ({again})", stacklevel=2)
 
 
+def _recovered(result: EpisodeResult | None) -> Manifest:
+    """A manifest of what a result tells, where the file is lost; its version is unknown."""
+    assert result is not None
+    config = EpisodeConfig(
+        result.instruction, result.task, result.scene, labeling=result.labeling, seed=result.seed
+    )
+    return Manifest(config, result.model, result.model_kind, {}, "", result.final)
+
+
 def render_page(
     manifest: Manifest,
     trajectory: Trajectory,
     result: EpisodeResult | None,
     frames: Callable[[str], bytes],
+    missing: Sequence[str] = (),
 ) -> str:
     """Render the page of an episode.
 
@@ -137,85 +119,59 @@ def render_page(
         result: What came of it; None if it did not get that far.
         frames: Gives a recorded picture by its name. A picture that it fails to find (`OSError`,
             `LookupError`) is shown as missing.
+        missing: What of the record could not be read, a line each.
 
     Returns:
         A complete HTML document without any reference to the outside.
     """
-    steps = turns(trajectory, manifest.config.profile)
-    limits = manifest.config.limits
-    style, script = _text("episode.css"), _text("episode.js")
+    config, initial = manifest.config, manifest.initial
+    steps = turns(trajectory, config.profile)
+    asked = exchanges(steps, config.instruction, initial, config.labeling)
+    ended = trajectory.ended or (_ended(result) if result and not steps else None)
+    style, script = template_text("episode.css"), template_text("episode.js")
     return (
-        _environment()
+        environment()
         .get_template("episode.html.j2")
         .render(
-            config=manifest.config,
+            config=config,
             manifest=manifest,
             events=trajectory,
-            ended=trajectory.ended,
-            verdict=_verdict(manifest, trajectory.ended, result),
+            ended=ended,
+            verdict=verdict(manifest, ended, result),
             result=result,
-            calls=dict(sorted(Counter(act.name for act in trajectory.acts).items())),
-            account=_account(trajectory.thoughts),
+            missing=missing,
+            account=Account.of(trajectory, result),
             turns=steps,
-            caps=_caps(manifest.config.budget),
-            ending=lambda ended: _ending(limits, ended),
-            plan=floor_plan(manifest.initial, steps, result.final if result else None),
-            plan_margin=MARGIN_M,
+            exchanges=asked,
+            caps=_caps(config.budget),
+            ending=lambda ended: ending(config.limits, ended),
+            kind=KINDS[manifest.model_kind],
+            plan=_plan(manifest, trajectory, steps, result),
             named=_naming(manifest),
             picture=lambda name: _data_url(name, frames),
-            style=style,
-            script=script,
+            style=Markup(style),  # Ours, and named by its hash in the page's policy.
+            script=Markup(script),
             style_hash=_csp_hash(style),
             script_hash=_csp_hash(script),
         )
     )
 
 
-def _verdict(
-    manifest: Manifest, ended: Ended | None, result: EpisodeResult | None
-) -> tuple[str, str, str]:
-    """How the episode ended: a tone for the colour, a headline and a sentence."""
-    if ended is None:
-        return (
-            "unfinished",
-            "Not finished",
-            "The record has no end: the run was stopped, or it is still going on.",
-        )
-    if result is None and manifest.config.task and ended.reason.is_scored:
-        return "unfinished", "Not scored", "The episode ended, but its result was never written."
-    return _ending(manifest.config.limits, ended)
+def _plan(
+    manifest: Manifest, trajectory: Trajectory, steps: Sequence[Turn], result: EpisodeResult | None
+) -> FloorPlan | None:
+    """The map; None if nobody knows how the room was at the start."""
+    if not manifest.versions:
+        return None
+    told = followed(trajectory.acts)
+    return floor_plan(manifest.initial, steps, result.final if result else None, told)
 
 
-def _ending(limits: Limits, ended: Ended) -> tuple[str, str, str]:
-    """How one instruction ended: a tone for the colour, a headline and a sentence."""
-    tone, headline, sentence = _ENDINGS[ended.reason]
-    return tone, headline, sentence.format(limits=limits)
-
-
-@dataclass(frozen=True, slots=True)
-class _Account:
-    """What the model took."""
-
-    usage: Usage
-    cost_usd: float | None
-    """None if the price of any answer is unknown: an unknown price is not 0."""
-    is_estimated: bool
-    """Whether no provider counted the tokens."""
-    requests: int
-    rungs: tuple[str, ...]
-    """How calls were asked for."""
-    unreadable: int
-    """Protocol failures."""
-
-
-def _account(thoughts: Sequence[Thought]) -> _Account:
-    return _Account(
-        sum((thought.usage for thought in thoughts), Usage()),
-        total_cost(thoughts),
-        any(thought.usage.estimated for thought in thoughts),
-        sum(thought.requests for thought in thoughts),
-        tuple(sorted({thought.rung.value for thought in thoughts if thought.rung})),
-        sum(bool(thought.unreadable) for thought in thoughts),
+def _ended(result: EpisodeResult) -> Ended:
+    """How an episode ended whose events are lost."""
+    seconds = result.model_s + result.world_s
+    return Ended(
+        result.steps, result.termination, result.answer, result.state_hash, seconds, result.why
     )
 
 
@@ -250,49 +206,3 @@ def _csp_hash(text: str) -> str:
     """A source expression that allows exactly this inline text."""
     digest = hashlib.sha256(text.encode()).digest()
     return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
-
-
-def _text(name: str) -> str:
-    folder = resources.files(__package__) / "templates"
-    return (folder / name).read_text(encoding="utf-8")
-
-
-@cache
-def _environment() -> Environment:
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FunctionLoader(_text),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(
-        place=_place, degrees=_degrees, seconds=_seconds, thousands=_thousands, dollars=_dollars
-    )
-    return environment
-
-
-def _place(point: Vec3, digits: int = 2) -> str:
-    # Rounding first turns -0.001 into 0.00, never -0.00.
-    p = point.rounded(digits)
-    return f"({p.x:.{digits}f}, {p.y:.{digits}f}, {p.z:.{digits}f})"
-
-
-def _degrees(angle_rad: float) -> str:
-    return f"{round(math.degrees(angle_rad)) % 360}°"
-
-
-def _seconds(value: float) -> str:
-    if value < 1:
-        return f"{value * 1000:.0f} ms"
-    return f"{value:.1f} s" if value < 120 else f"{value // 60:.0f} min {value % 60:.0f} s"
-
-
-def _thousands(value: int) -> str:
-    return f"{value:,}"
-
-
-def _dollars(value: float) -> str:
-    return f"${value:.2f}" if value >= 1 else f"${value:.4f}"

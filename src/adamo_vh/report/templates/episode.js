@@ -2,11 +2,12 @@
 (() => {
   const all = (query, root = document) => [...root.querySelectorAll(query)];
   const turns = all(".turn");
-  const links = all(".index a");
+  const links = all(".index [data-tone]");
   const poses = all(".pose");
   const box = document.querySelector(".lightbox");
   const stage = box.querySelector(".stage");
-  const caption = box.querySelector(".caption");
+  const caption = box.querySelector(".told");
+  const lens = document.querySelector(".lens");
   const where = document.querySelector(".where");
   let active = -1;
   let pinned = null; // Scroll position after a jump: it decides nothing until the reader scrolls.
@@ -63,11 +64,43 @@
     const what = button.querySelector("img, svg");
     const copy = what.cloneNode(true);
     copy.removeAttribute("id");
+    lens.hidden = true;
     stage.replaceChildren(copy);
     stage.className = `stage ${button.dataset.zoom}`;
     const words = button.closest("figure").querySelector("figcaption").cloneNode(true);
     caption.replaceChildren(...words.childNodes);
     if (!box.open) box.showModal();
+    stage.focus();
+  }
+
+  // Every pixel of the picture, or all of it; the point that was meant stays in sight.
+  function toggle(x = 0.5, y = 0.5) {
+    if (!stage.classList.contains("view")) return;
+    if (!stage.classList.toggle("full")) return;
+    stage.scrollLeft = x * stage.scrollWidth - stage.clientWidth / 2;
+    stage.scrollTop = y * stage.scrollHeight - stage.clientHeight / 2;
+  }
+
+  // A lens for those who can hover: the pixels under the pointer, one to one.
+  function magnify(event) {
+    const image = event.currentTarget.querySelector("img");
+    const place = image.getBoundingClientRect();
+    if (event.pointerType !== "mouse" || image.naturalWidth < place.width * 1.3) return;
+    if (lens.dataset.of !== image.id) {
+      const copy = new Image();
+      copy.src = image.src;
+      copy.alt = "";
+      lens.replaceChildren(copy);
+      lens.dataset.of = image.id;
+    }
+    lens.hidden = false;
+    const [width, height] = [lens.clientWidth, lens.clientHeight];
+    const x = ((event.clientX - place.left) / place.width) * image.naturalWidth;
+    const y = ((event.clientY - place.top) / place.height) * image.naturalHeight;
+    lens.firstChild.style.transform = `translate(${width / 2 - x}px, ${height / 2 - y}px)`;
+    const left = event.clientX + 28 + width < window.innerWidth ? event.clientX + 28 : event.clientX - 28 - width;
+    const top = Math.max(8, Math.min(window.innerHeight - height - 12, event.clientY - height / 2));
+    lens.style.transform = `translate(${Math.max(8, left)}px, ${top}px)`;
   }
 
   // The view of a turn, in the turn that shows it.
@@ -85,10 +118,14 @@
   }
 
   for (const button of all(".zoom")) button.addEventListener("click", () => enlarge(button));
+  for (const button of all('.zoom[data-zoom="view"]')) {
+    button.addEventListener("pointermove", magnify);
+    button.addEventListener("pointerleave", () => { lens.hidden = true; });
+  }
   for (const button of all("[data-go]")) {
     button.addEventListener("click", () => step(Number(button.dataset.go)));
   }
-  for (const link of all('.index a, .node, .same')) {
+  for (const link of all(".index [data-tone], .node, .same")) {
     link.addEventListener("click", (event) => {
       event.preventDefault();
       go(turns.findIndex((turn) => `#${turn.id}` === link.getAttribute("href")));
@@ -96,11 +133,20 @@
   }
   box.addEventListener("click", (event) => {
     // A click on the picture shows its pixels one to one; anywhere else closes.
-    if (event.target.closest(".view img")) stage.classList.toggle("full");
-    else if (!event.target.closest("svg")) box.close();
+    if (event.target.closest(".view img")) {
+      const place = event.target.getBoundingClientRect();
+      toggle((event.clientX - place.left) / place.width, (event.clientY - place.top) / place.height);
+    } else if (!event.target.closest("svg")) box.close();
   });
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === "z" && box.open) {
+      event.preventDefault();
+      toggle();
+      return;
+    }
+    // The arrows move an enlarged picture that is larger than the window.
+    if (stage.classList.contains("full") && box.open && event.key.startsWith("Arrow")) return;
     const by = { ArrowRight: 1, j: 1, ArrowLeft: -1, k: -1 }[event.key];
     if (by) {
       event.preventDefault();
@@ -110,6 +156,7 @@
       if (button) enlarge(button);
     }
   });
+  window.addEventListener("scroll", () => { lens.hidden = true; }, { passive: true });
   window.addEventListener("scroll", follow, { passive: true });
   window.addEventListener("resize", follow, { passive: true });
 

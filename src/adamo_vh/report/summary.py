@@ -1,0 +1,157 @@
+"""What a page says of an episode as a whole: how it ended, and what the model took."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from adamo_vh.episode.result import EpisodeResult, Manifest, total_cost
+from adamo_vh.inference.model import Ending, ModelKind, Usage
+from adamo_vh.record.termination import Limits, TerminationReason
+from adamo_vh.record.trajectory import Ended, Thought, Trajectory
+
+_ENDINGS = {
+    TerminationReason.ANSWERED: ("ended", "Answered", "The model ended the episode."),
+    TerminationReason.EMPTY_REPLY: (
+        "truncated",
+        "Empty reply",
+        "The model said nothing, also after a reminder.",
+    ),
+    TerminationReason.PROTOCOL: (
+        "truncated",
+        "Unreadable",
+        "{limits.max_unreadable} answers in a row could not be read.",
+    ),
+    TerminationReason.LOOP: (
+        "truncated",
+        "Loop",
+        "Stopped: {limits.max_repeats} times the same call into the same state, or no call.",
+    ),
+    TerminationReason.BUDGET: (
+        "truncated",
+        "Budget",
+        "Stopped: the budget of the episode is used up.",
+    ),
+    TerminationReason.STEP_LIMIT: (
+        "truncated",
+        "Step limit",
+        "Stopped after {limits.max_steps} steps.",
+    ),
+    TerminationReason.TIME_LIMIT: (
+        "truncated",
+        "Time limit",
+        "Stopped after {limits.max_seconds:g} s.",
+    ),
+    TerminationReason.RUN_BUDGET: (
+        "broken",
+        "Unscored",
+        "The budget of the whole run was used up; the episode does not count.",
+    ),
+    TerminationReason.BROKEN: (
+        "broken",
+        "Unscored",
+        "The episode broke through a fault that is not the model's; it does not count.",
+    ),
+}
+KINDS = {
+    ModelKind.VLM: "vision-language model",
+    ModelKind.RULE_BASED: "rule-based player, no VLM",
+    ModelKind.RANDOM: "random player, no VLM",
+    ModelKind.SCRIPTED: "scripted player, no VLM",
+    ModelKind.REPLAY: "recorded answers, no live model",
+}
+"""What kind of player a model is, so that nobody takes one for another."""
+FAILURES = {
+    Ending.CUT_OFF: "cut off",
+    Ending.UNPARSED_CALL: "unparsed call",
+    Ending.EMPTY: "empty",
+    Ending.FILTERED: "filtered",
+}
+"""Replies that are neither a call nor an answer."""
+
+
+def verdict(
+    manifest: Manifest, ended: Ended | None, result: EpisodeResult | None
+) -> tuple[str, str, str]:
+    """How the episode ended: a tone for the colour, a headline and a sentence."""
+    if ended is None:
+        return (
+            "unfinished",
+            "Not finished",
+            "The record has no end: the run was stopped, or it is still going on.",
+        )
+    if result is None and manifest.config.task and ended.reason.is_scored:
+        return "unfinished", "Not scored", "The episode ended, but its result cannot be read."
+    return ending(manifest.config.limits, ended)
+
+
+def ending(limits: Limits, ended: Ended) -> tuple[str, str, str]:
+    """How one instruction ended: a tone for the colour, a headline and a sentence."""
+    tone, headline, sentence = _ENDINGS[ended.reason]
+    return tone, headline, sentence.format(limits=limits)
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """What the episode took; from the result where there is one, so that lost events cost none."""
+
+    steps: int
+    calls: Mapping[str, int]
+    """Executed or refused tool calls by kind."""
+    model_calls: int
+    requests: int
+    usage: Usage
+    estimated: str
+    """"estimated" if no provider counted the tokens, "partly estimated", or empty."""
+    cost_usd: float | None
+    """None if the price of any answer is unknown: an unknown price is not 0."""
+    rungs: tuple[str, ...]
+    """How calls were asked for."""
+    unreadable: int
+    """Protocol failures."""
+    failures: Mapping[str, int]
+    """The same by what was wrong."""
+    model_s: float
+    world_s: float
+
+    @classmethod
+    def of(cls, trajectory: Trajectory, result: EpisodeResult | None) -> Account:
+        """Count."""
+        thoughts, acts = trajectory.thoughts, trajectory.acts
+        kinds = (FAILURES.get(t.reply.ending) for t in thoughts if t.unreadable)
+        failures = Counter(kind or "unreadable" for kind in kinds)
+        if result is not None:
+            return cls(
+                result.steps,
+                result.calls,
+                result.model_calls,
+                result.requests,
+                result.usage,
+                _estimated(thoughts) or ("estimated" if result.usage.estimated else ""),
+                result.cost_usd,
+                result.rungs,
+                result.unreadable,
+                failures,
+                result.model_s,
+                result.world_s,
+            )
+        return cls(
+            len(acts),
+            dict(sorted(Counter(act.name for act in acts).items())),
+            len(thoughts),
+            sum(thought.requests for thought in thoughts),
+            sum((thought.usage for thought in thoughts), Usage()),
+            _estimated(thoughts),
+            total_cost(thoughts),
+            tuple(sorted({thought.rung.value for thought in thoughts if thought.rung})),
+            sum(bool(thought.unreadable) for thought in thoughts),
+            failures,
+            sum(thought.model_s for thought in thoughts),
+            sum(act.world_s for act in acts),
+        )
+
+
+def _estimated(thoughts: Sequence[Thought]) -> str:
+    guesses = [thought.usage.estimated for thought in thoughts]
+    return "" if not any(guesses) else "estimated" if all(guesses) else "partly estimated"
