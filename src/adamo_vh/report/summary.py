@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from adamo_vh.episode.result import EpisodeResult, Manifest, total_cost
-from adamo_vh.inference.model import Ending, ModelKind, Usage
+from adamo_vh.inference.model import Ending, ModelKind, Reply, Usage
 from adamo_vh.record.termination import Limits, TerminationReason
-from adamo_vh.record.trajectory import Ended, Thought, Trajectory
+from adamo_vh.record.trajectory import Ended, Trajectory
 
 _ENDINGS = {
     TerminationReason.ANSWERED: ("ended", "Answered", "The model ended the episode."),
@@ -119,7 +119,8 @@ class Account:
     def of(cls, trajectory: Trajectory, result: EpisodeResult | None) -> Account:
         """Count."""
         thoughts, acts = trajectory.thoughts, trajectory.acts
-        kinds = (FAILURES.get(t.reply.ending) for t in thoughts if t.unreadable)
+        replies = [thought.reply for thought in thoughts]
+        kinds = (FAILURES.get(reply.ending) for reply in replies if reply.unreadable)
         failures = Counter(kind or "unreadable" for kind in kinds)
         if result is not None:
             return cls(
@@ -128,7 +129,7 @@ class Account:
                 result.model_calls,
                 result.requests,
                 result.usage,
-                _estimated(thoughts) or ("estimated" if result.usage.estimated else ""),
+                _estimated(replies) or ("estimated" if result.usage.estimated else ""),
                 result.cost_usd,
                 result.rungs,
                 result.unreadable,
@@ -140,18 +141,18 @@ class Account:
             len(acts),
             dict(sorted(Counter(act.name for act in acts).items())),
             len(thoughts),
-            sum(thought.requests for thought in thoughts),
-            sum((thought.usage for thought in thoughts), Usage()),
-            _estimated(thoughts),
+            sum(reply.requests for reply in replies),
+            sum((reply.usage for reply in replies), Usage()),
+            _estimated(replies),
             total_cost(thoughts),
-            tuple(sorted({thought.rung.value for thought in thoughts if thought.rung})),
-            sum(bool(thought.unreadable) for thought in thoughts),
+            tuple(sorted({reply.rung.value for reply in replies if reply.rung})),
+            sum(bool(reply.unreadable) for reply in replies),
             failures,
-            sum(thought.model_s for thought in thoughts),
+            sum(reply.seconds for reply in replies),
             sum(act.world_s for act in acts),
         )
 
 
-def _estimated(thoughts: Sequence[Thought]) -> str:
-    guesses = [thought.usage.estimated for thought in thoughts]
+def _estimated(replies: Sequence[Reply]) -> str:
+    guesses = [reply.usage.estimated for reply in replies]
     return "" if not any(guesses) else "estimated" if all(guesses) else "partly estimated"
