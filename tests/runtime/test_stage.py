@@ -14,6 +14,7 @@ from adamo_vh.engine import BodyReport
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Vec3
 from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.session.filming import FilmSet
 
 PLATE, CUP = 57, 45
 FLOOR = Vec3(-1.6, -2.4, 0.0)
@@ -128,7 +129,7 @@ def test_the_figure_is_seen_from_outside_but_does_not_hide_the_view(
 def test_a_film_can_be_played(engine: BuiltinEngine, tmp_path: Path) -> None:
     import cv2
 
-    recorder = VideoRecorder(tmp_path / "film.webm", engine)
+    recorder = VideoRecorder(tmp_path / "film.webm", FilmSet(engine))
     try:
         engine.body.look(Vec3(0.5, -1.2, 1.0))
     finally:
@@ -148,4 +149,4 @@ def test_a_film_can_be_played(engine: BuiltinEngine, tmp_path: Path) -> None:
 
 def test_a_film_needs_a_known_ending(engine: BuiltinEngine, tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"\.webm or \.avi"):
-        VideoRecorder(tmp_path / "film.mp4", engine)
+        VideoRecorder(tmp_path / "film.mp4", FilmSet(engine))

@@ -20,12 +20,10 @@ from adamo_vh.cognition.profile import Profile
 from adamo_vh.cognition.turns import read_turn
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Camera, Vec3
-from adamo_vh.observation import Frame
+from adamo_vh.observation import BodyState, Frame
 from adamo_vh.record.trajectory import Acted, Ended, Event, Observed, Started, Thought
 from adamo_vh.record.turn import Wish
-from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.runtime.embodiment import Stance
-from adamo_vh.runtime.stage import FRAMES_PER_S
+from adamo_vh.session.filming import FilmSet
 
 WIDTH, HEIGHT = 1280, 720
 _ROOM_PX = (832, 720)
@@ -34,6 +32,7 @@ _PAUSE_S = 1.2
 """How long a thought stands before the body moves."""
 _CODECS = {".webm": "VP80", ".avi": "MJPG"}
 _DISTANCE_M, _CAMERA_Z_M, _WALL_M = 2.7, 1.75, 0.35
+_FOV_RAD = math.radians(62.0)
 _FOLLOW = 0.1
 """Share of the way to its ideal place that the camera goes in each frame."""
 _INK, _PAPER, _CALL = (236, 232, 224), (24, 24, 27), (150, 190, 250)
@@ -48,12 +47,12 @@ _Line = tuple[str, str, tuple[int, int, int]]
 class VideoRecorder:
     """Films an episode. Observes the agent's events, and the moments of the engine's actions."""
 
-    def __init__(self, path: Path, engine: BuiltinEngine) -> None:
+    def __init__(self, path: Path, film_set: FilmSet) -> None:
         """Begin to film.
 
         Args:
             path: Of the film: .webm (VP8) or .avi (Motion JPEG).
-            engine: Whose episode is filmed.
+            film_set: The engine whose episode is filmed.
 
         Raises:
             ConfigError: The name has another ending, or the file cannot be written.
@@ -65,20 +64,20 @@ class VideoRecorder:
             raise ConfigError(f"{path}: films end in {' or '.join(_CODECS)}.")
         path.parent.mkdir(parents=True, exist_ok=True)
         code = cv2.VideoWriter.fourcc(*_CODECS[path.suffix])
-        self._writer = cv2.VideoWriter(str(path), code, FRAMES_PER_S, (WIDTH, HEIGHT))
+        self._writer = cv2.VideoWriter(str(path), code, FilmSet.moments_per_s, (WIDTH, HEIGHT))
         if not self._writer.isOpened():
             raise ConfigError(f"{path}: cannot be written as a film.")
         self._canvas = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
         """The picture, in the order blue, green, red."""
         self._count = 0
         self._standing_s = 0.0
-        self._engine = engine
+        self._set = film_set
         self._camera_at: Vec3 | None = None
         self._text: list[_Line] = []
         self._wishes: Sequence[Wish] = ()
         """The calls of the turn, from the one that is being carried out."""
         self._drawn: tuple[tuple[_Line, ...], NDArray[np.uint8]] | None = None
-        engine.stage.watcher = self._moment
+        film_set.watch(self._moment)
 
     def notify(self, event: Event, frame: Frame | None = None) -> None:
         """Change the subtitles; pause where there is something to read."""
@@ -113,7 +112,7 @@ class VideoRecorder:
 
     def close(self) -> None:
         """Finish the film."""
-        self._engine.stage.watcher = None
+        self._set.watch(None)
         self._writer.release()
 
     def _next(self) -> list[_Line]:
@@ -126,31 +125,28 @@ class VideoRecorder:
 
     def _pause(self, seconds: float) -> None:
         """Stand, breathe and blink while the text can be read; drawn at a third of the rate."""
-        for i in range(0, round(seconds * FRAMES_PER_S), 3):
-            self._standing_s += 3 / FRAMES_PER_S
-            with self._engine.stage.idling(self._engine.body.stance, self._standing_s):
-                self._moment(i / FRAMES_PER_S)
+        for _ in range(0, round(seconds * FilmSet.moments_per_s), 3):
+            self._standing_s += 3 / FilmSet.moments_per_s
+            with self._set.idling(self._standing_s):
+                self._moment()
             self._writer.write(self._canvas)
             self._writer.write(self._canvas)
 
-    def _moment(self, _: float) -> bool:
+    def _moment(self) -> None:
         """Add one picture. The eyes' is small and drawn every other time."""
-        stage = self._engine.stage
-        shown = stage.shown(self._engine.body.stance)
-        room = stage.picture(self._engine.body.stance, self._follow(shown.body))
+        room = self._set.picture(self._follow(self._set.body()))
         self._canvas[:, : _ROOM_PX[0]] = room[:, :, ::-1]
         if self._count % 2 == 0:
-            eyes = stage.picture(self._engine.body.stance, shown.body.camera(*_EYES_PX), head=False)
+            eyes = self._set.eyes(*_EYES_PX)
             self._canvas[: _EYES_PX[1], _ROOM_PX[0] :] = eyes[:, :, ::-1]
         self._count += 1
         text = self._subtitles(WIDTH - _ROOM_PX[0], HEIGHT - _EYES_PX[1])
         self._canvas[_EYES_PX[1] :, _ROOM_PX[0] :] = text[:, :, ::-1]
         self._writer.write(self._canvas)
-        return True
 
-    def _follow(self, body: Stance) -> Camera:
+    def _follow(self, body: BodyState) -> Camera:
         """A camera in front and to the side, inside the room, that moves softly."""
-        scene, at = self._engine.scene, body.position
+        scene, at = self._set.scene, body.position
         angle = body.heading_rad + math.radians(50.0)
         x = at.x + _DISTANCE_M * math.cos(angle)
         y = at.y + _DISTANCE_M * math.sin(angle)
@@ -159,10 +155,7 @@ class VideoRecorder:
         wish = Vec3(x, y, _CAMERA_Z_M)
         last = self._camera_at or wish
         self._camera_at = here = last + (wish - last) * _FOLLOW
-        line = Vec3(at.x, at.y, 1.0) - here
-        pitch = math.atan2(line.z, max(0.3, math.hypot(line.x, line.y)))
-        yaw = math.atan2(line.y, line.x)
-        return Camera(here, yaw, pitch, math.radians(62.0), *_ROOM_PX)
+        return Camera.towards(here, Vec3(at.x, at.y, 1.0), _FOV_RAD, _ROOM_PX)
 
     def _subtitles(self, width: int, height: int) -> NDArray[np.uint8]:
         from PIL import Image, ImageDraw, ImageFont

@@ -6,7 +6,6 @@ import json
 import os
 import platform
 import sys
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
@@ -70,9 +69,9 @@ def _versions() -> str:
 
 
 def _cache() -> str:
-    from adamo_vh.runtime.assets.bake import cache_file
+    from adamo_vh.session.builtin import asset_folder
 
-    folder = cache_file("key").parent
+    folder = asset_folder()
     folder.mkdir(parents=True, exist_ok=True)
     probe = folder / f".probe-{os.getpid()}"
     probe.write_bytes(b"")
@@ -83,22 +82,12 @@ def _cache() -> str:
 
 
 def _graphics() -> str:
-    from adamo_vh.runtime.graphics import backend_name
+    from adamo_vh.session.builtin import graphics_name
 
-    return f"off-screen OpenGL through {backend_name()}"
+    return f"off-screen OpenGL through {graphics_name()}"
 
 
 def _test_frame() -> str:
-    from adamo_vh.errors import RenderingError
-    from adamo_vh.runtime.builtin import BuiltinEngine
+    from adamo_vh.session.builtin import check_machine
 
-    engine = BuiltinEngine("s1")
-    engine.capture(640, 360)
-    engine.stage.forget()
-    started = time.perf_counter()
-    percept = engine.capture(640, 360)
-    seconds = time.perf_counter() - started
-    engine.close()
-    if percept.rgb.std() < 5 or not percept.objects:
-        raise RenderingError("The test frame of scene s1 is blank.")
-    return f"scene s1, {len(percept.objects)} objects in view, 640x360 in {seconds * 1000:.0f} ms"
+    return check_machine()

@@ -73,16 +73,16 @@ def _announce(ahead: Forecast, budget: Budget) -> None:
 def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> Iterator[World]:
     """An engine whose episode is filmed; the film is finished at the end."""
     from adamo_vh.adapters.video import VideoRecorder
-    from adamo_vh.runtime.builtin import BuiltinEngine
+    from adamo_vh.session.filming import FilmSet
 
-    engine = BuiltinEngine(settings["scene"], settings["figure"])
-    recorder = VideoRecorder(path, engine)
+    film_set = FilmSet.of(settings["scene"], settings["figure"])
+    recorder = VideoRecorder(path, film_set)
     observers.append(recorder)
     try:
-        yield engine
+        yield film_set.engine
     finally:
         recorder.close()
-        engine.close()
+        film_set.engine.close()
 
 
 def resume_and_show(folder: Path, *, as_json: bool) -> None:

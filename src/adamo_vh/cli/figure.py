@@ -14,13 +14,8 @@ def export(file: Path, who: str) -> None:
     Raises:
         ConfigError: The file is named like another format, or nobody is called so.
     """
-    from adamo_vh.runtime.human.clips import clips
-    from adamo_vh.runtime.human.glb import write_glb
-    from adamo_vh.runtime.human.looks import load_figure
+    from adamo_vh.session.builtin import write_figure
 
     if file.suffix.lower() != ".glb":
         raise ConfigError(f"{file}: a figure is written as GLB; name it {file.stem or 'x'}.glb.")
-    figure, motions = load_figure(who), clips()
-    write_glb(file, figure, motions)
-    names = ", ".join(clip.name for clip in motions)
-    say(f"{file}: {who}, {figure.triangle_count} triangles, clips {names}")
+    say(f"{file}: {who}, {write_figure(file, who)}")

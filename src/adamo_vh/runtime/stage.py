@@ -22,7 +22,8 @@ from adamo_vh.runtime.human.skin_mujoco import pose_human
 from adamo_vh.runtime.rendering import SceneRenderer
 from adamo_vh.runtime.world import CompiledWorld
 
-FRAMES_PER_S = 15
+MOMENTS_PER_S = 15
+"""How often an action that is watched is shown."""
 _OFF_THE_WALL_M = 0.005
 """How near a held thing comes to a wall."""
 
@@ -157,7 +158,7 @@ class Stage:
         motion = make()
         data = self._world.data
         kept = data.qpos.copy()
-        moments = np.arange(0.0, motion.duration_s, 1.0 / FRAMES_PER_S)
+        moments = np.arange(0.0, motion.duration_s, 1.0 / MOMENTS_PER_S)
         try:
             for seconds in (*moments.tolist(), motion.duration_s):
                 self._moment = motion.at(seconds)

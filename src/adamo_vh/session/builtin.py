@@ -1,0 +1,176 @@
+"""The one door to the built-in engine for those who need more of it than a `World`.
+
+Scene checks, pictures, figures and a look at the machine: the command line, adapters and pages ask
+here, so that nothing but the session knows which engine is built in.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from adamo_vh.action_server.engine_check import engine_faults
+from adamo_vh.errors import RenderingError, SceneError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from adamo_vh.runtime.builtin import BuiltinEngine
+    from adamo_vh.runtime.inspection.finding import SceneFinding
+    from adamo_vh.runtime.scenes import Scene
+
+    Picture = NDArray[np.uint8]
+    """(H, W, 3) colour."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneReport:
+    """What a look over a scene brought."""
+
+    name: str
+    findings: tuple[SceneFinding, ...]
+    pictures: Mapping[str, Picture]
+    """By name; none of a scene that cannot be simulated."""
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether nothing is wrong with it."""
+        return not any(finding.severity == "error" for finding in self.findings)
+
+
+def scene_names() -> tuple[str, ...]:
+    """Names of the scenes that come with the package."""
+    from adamo_vh.runtime.scenes import scene_names as names
+
+    return names()
+
+
+def known_scenes() -> list[Scene]:
+    """The scenes that come with the package, as their files say."""
+    from adamo_vh.runtime.scenes import load_scene
+
+    return [load_scene(name) for name in scene_names()]
+
+
+def inspect_scene_file(file: str) -> SceneReport:
+    """Look a scene over, with a picture from above and one from the start.
+
+    Args:
+        file: Scene file or built-in name.
+
+    Raises:
+        SceneError: There is no such file.
+    """
+    from adamo_vh.runtime.builtin import BuiltinEngine
+    from adamo_vh.runtime.inspection.arrangement import inspect_arrangement
+    from adamo_vh.runtime.inspection.checks import inspect_scene
+    from adamo_vh.runtime.inspection.finding import bounded, error
+    from adamo_vh.runtime.scenes import load_scene
+
+    try:
+        scene = load_scene(file)
+        findings = inspect_arrangement(scene)
+        if any(finding.blocks for finding in findings):
+            return SceneReport(scene.name, findings, {})
+        engine = BuiltinEngine(scene)
+    except SceneError as fault:
+        if not Path(file).is_file():
+            raise
+        found = (error(where, problem, "", blocks=True) for where, problem in fault.faults)
+        return SceneReport(Path(file).stem, tuple(bounded(found)), {})
+    try:
+        findings = inspect_scene(scene, engine)
+        return SceneReport(scene.name, findings, _pictures(scene, engine, ("top", "start")))
+    finally:
+        engine.close()
+
+
+def scene_pictures(file: str) -> SceneReport:
+    """Draw a scene from above, from each corner and from the start; nothing is looked over.
+
+    Raises:
+        SceneError: The scene is unknown or wrong.
+    """
+    from adamo_vh.runtime.builtin import BuiltinEngine
+    from adamo_vh.runtime.scenes import load_scene
+
+    scene = load_scene(file)
+    engine = BuiltinEngine(scene)
+    try:
+        return SceneReport(scene.name, (), _pictures(scene, engine, None))
+    finally:
+        engine.close()
+
+
+def _pictures(
+    scene: Scene, engine: BuiltinEngine, names: tuple[str, ...] | None
+) -> dict[str, Picture]:
+    from adamo_vh.runtime.inspection.checks import cameras
+
+    engine.reset(0)
+    chosen = cameras(scene, engine)
+    drawn = {}
+    for name in names or (*chosen, "start"):
+        outside = chosen.get(name)
+        view = engine.view(outside) if outside else engine.capture(1920, 1080)
+        drawn[name] = view.rgb
+    return drawn
+
+
+def write_figure(file: Path, who: str) -> str:
+    """Write a figure as a skinned GLB with its clips; what it has, in words.
+
+    Raises:
+        ConfigError: No figure has this name.
+    """
+    from adamo_vh.runtime.human.clips import clips
+    from adamo_vh.runtime.human.glb import write_glb
+    from adamo_vh.runtime.human.looks import load_figure
+
+    figure, motions = load_figure(who), clips()
+    write_glb(file, figure, motions)
+    names = ", ".join(clip.name for clip in motions)
+    return f"{figure.triangle_count} triangles, clips {names}"
+
+
+def asset_folder() -> Path:
+    """Where baked assets are cached."""
+    from adamo_vh.runtime.assets.bake import cache_file
+
+    return cache_file("key").parent
+
+
+def graphics_name() -> str:
+    """Which OpenGL this machine draws with.
+
+    Raises:
+        RenderingError: None works; names what helps.
+    """
+    from adamo_vh.runtime.graphics import backend_name
+
+    return backend_name()
+
+
+def check_machine() -> str:
+    """Let somebody live in scene s1 for a moment; what was seen, in words.
+
+    Raises:
+        RenderingError: The engine does not keep its contract on this machine.
+    """
+    from adamo_vh.runtime.builtin import BuiltinEngine
+
+    engine = BuiltinEngine("s1")
+    try:
+        if faults := engine_faults(engine):
+            raise RenderingError(f"Scene s1 does not work here: {faults[0]}")
+        engine.stage.forget()
+        started = time.perf_counter()
+        percept = engine.capture(640, 360)
+        milliseconds = (time.perf_counter() - started) * 1000
+    finally:
+        engine.close()
+    return f"scene s1, {len(percept.objects)} objects in view, 640x360 in {milliseconds:.0f} ms"

@@ -1,0 +1,74 @@
+"""What a film needs of the built-in engine: the moments of its actions, from any camera."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from adamo_vh.engine import SceneInfo
+from adamo_vh.geometry import Camera
+from adamo_vh.observation import BodyState
+from adamo_vh.runtime.stage import MOMENTS_PER_S
+
+if TYPE_CHECKING:
+    from adamo_vh.runtime.builtin import BuiltinEngine
+
+
+class FilmSet:
+    """An engine while it is filmed. Looking at it changes nothing about the episode."""
+
+    moments_per_s = MOMENTS_PER_S
+    """How often an action that is watched is shown."""
+
+    def __init__(self, engine: BuiltinEngine) -> None:
+        """Look at an engine."""
+        self.engine = engine
+
+    @classmethod
+    def of(cls, scene: str, figure: str) -> FilmSet:
+        """The built-in engine with a scene, made to be filmed.
+
+        Raises:
+            SceneError: The scene is unknown or wrong.
+            ConfigError: No figure has this name.
+        """
+        from adamo_vh.runtime.builtin import BuiltinEngine
+
+        return cls(BuiltinEngine(scene, figure))
+
+    @property
+    def scene(self) -> SceneInfo:
+        """The room."""
+        return self.engine.scene
+
+    def watch(self, moment: Callable[[], None] | None) -> None:
+        """Be called at every shown moment of an action; None ends it."""
+
+        def watcher(_: float) -> bool:
+            if moment is not None:
+                moment()
+            return True
+
+        self.engine.stage.watcher = None if moment is None else watcher
+
+    def body(self) -> BodyState:
+        """How the figure stands at this moment."""
+        return self.engine.stage.shown(self.engine.body.stance).body.state()
+
+    def picture(self, camera: Camera) -> NDArray[np.uint8]:
+        """(H, W, 3) this moment, from any camera."""
+        return self.engine.stage.picture(self.engine.body.stance, camera)
+
+    def eyes(self, width_px: int, height_px: int) -> NDArray[np.uint8]:
+        """(H, W, 3) this moment, through the figure's eyes."""
+        stance = self.engine.body.stance
+        camera = self.engine.stage.shown(stance).body.camera(width_px, height_px)
+        return self.engine.stage.picture(stance, camera, head=False)
+
+    def idling(self, seconds: float) -> AbstractContextManager[None]:
+        """Show the figure some seconds into standing still: it breathes and blinks."""
+        return self.engine.stage.idling(self.engine.body.stance, seconds)
