@@ -193,7 +193,7 @@ def test_looking_again_after_a_change_is_no_loop(engine: BuiltinEngine) -> None:
 
 
 def test_unreadable_replies_are_told_counted_and_end_at_last(engine: BuiltinEngine) -> None:
-    odd = Reply(AIMessage("blah"), unreadable="there is no Action.")
+    odd = Reply(AIMessage("blah"), unreadable="could not be read: there is no Action.")
     ended, trajectory, player = play(engine, [odd, odd, says(PICK), odd, odd, odd])
     assert ended.reason is TerminationReason.PROTOCOL
     assert sum(bool(thought.unreadable) for thought in trajectory.thoughts) == 5
@@ -286,7 +286,7 @@ def test_a_view_that_a_call_brought_is_not_taken_again(engine: BuiltinEngine) ->
 
 
 def test_what_is_asked_back_says_how_to_go_on(engine: BuiltinEngine) -> None:
-    odd = Reply(AIMessage("blah"), unreadable="there is no Action.")
+    odd = Reply(AIMessage("blah"), unreadable="could not be read: there is no Action.")
     _, _, player = play(engine, [Reply(AIMessage("")), odd, finish()])
     told = [m.text for m in player.prompts[-1] if isinstance(m, HumanMessage)][1:]
     assert len(told) == 2

@@ -51,6 +51,9 @@ class Anthropic:
             }
         )
 
+    def ended(self, reason: str, text: str = "", calls: Sequence[Call] = ()) -> Canned:
+        return self.answer(text, calls, stop_reason=reason)
+
     def refusal(self) -> Canned:
         return self.answer(stop_reason="refusal")
 

@@ -61,6 +61,12 @@ class Chat:
             }
         )
 
+    def ended(self, reason: str, text: str = "", calls: Sequence[Call] = ()) -> Canned:
+        body = self.answer(text, calls).body
+        assert isinstance(body, dict)
+        body["choices"][0]["finish_reason"] = reason
+        return Canned(body)
+
     def refusal(self) -> Canned:
         return self.answer(refusal="I will not.")
 

@@ -42,6 +42,9 @@ class Google:
             {"candidates": [candidate], "usageMetadata": usage, "modelVersion": self.model}
         )
 
+    def ended(self, reason: str, text: str = "", calls: Sequence[Call] = ()) -> Canned:
+        return self.answer(text, calls, finish=reason)
+
     def refusal(self) -> Canned:
         return self.answer(finish="SAFETY")
 

@@ -81,6 +81,11 @@ class Responses:
             "output": [],
         }
 
+    def ended(self, reason: str, text: str = "", calls: Sequence[Call] = ()) -> Canned:
+        body = self.answer(text, calls).body
+        assert isinstance(body, dict)
+        return Canned({**body, "status": "incomplete", "incomplete_details": {"reason": reason}})
+
     def refusal(self) -> Canned:
         return self.answer(refusal="I will not.")
 

@@ -18,6 +18,7 @@ from adamo_vh.cognition.turns import offered, read_turn
 from adamo_vh.errors import AdamoError
 from adamo_vh.inference.messages import AIMessage
 from adamo_vh.inference.model import Model, Sampling
+from adamo_vh.inference.tidy import tidied
 from adamo_vh.observation import Frame, Observation
 from adamo_vh.perception import TextForm
 from adamo_vh.record.termination import Limits, Stopwatch, TerminationReason
@@ -116,7 +117,7 @@ class Agent:
         """Ask the model."""
         messages = self._memory.messages()
         asked = time.monotonic()
-        reply = self._model.complete(messages, self._tools, self._sampling)
+        reply = tidied(self._model.complete(messages, self._tools, self._sampling), self._tools)
         # Only the reply's own time counts: waits do not, and a recorded reply took its time before.
         self._watch.leave_out(time.monotonic() - asked - reply.seconds)
         self._tell(thought(self._steps, self._memory.state_text, messages, reply))
@@ -154,12 +155,12 @@ class Agent:
     def _object(self, turn: Turn, objection: str) -> None:
         """Say why a turn is not carried out, or does not end the episode."""
         self._reply(turn, objection)
-        if not turn.wishes:
+        if not (turn.wishes and turn.goes_back):
             self._memory.remark(objection)
 
     def _reply(self, turn: Turn, text: str) -> None:
         """Remember a turn without an action; every call gets the same answer."""
-        if turn.wishes or turn.message.text.strip():
+        if turn.goes_back:
             results = [self._result(wish, text) for wish in turn.wishes]
             self._memory.add_step(turn.message, *results)
 

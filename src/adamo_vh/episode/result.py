@@ -215,7 +215,7 @@ def summarise(
         model_calls=len(trajectory.thoughts),
         calls=dict(sorted(kinds.items())),
         missing_notes=sum(bool(t.calls) and not t.reasoning.strip() for t in trajectory.thoughts),
-        unreadable=sum(bool(t.unreadable) for t in trajectory.thoughts),
+        unreadable=sum(t.reply.ending.is_failure for t in trajectory.thoughts),
         requests=sum(t.requests for t in trajectory.thoughts),
         usage=sum((t.usage for t in trajectory.thoughts), Usage()),
         cost_usd=total_cost(trajectory.thoughts),

@@ -15,6 +15,16 @@ _DEEPEST = 50
 """No tool takes arguments that are nested deeper, and records cannot hold what is much deeper."""
 
 
+def clean_arguments(arguments: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Arguments as strict JSON without lone surrogates; None if they are none or too deep."""
+    if _is_deeper(arguments, _DEEPEST):
+        return None
+    try:
+        return read_arguments(dump_arguments(arguments))
+    except (TypeError, ValueError, RecursionError):
+        return None
+
+
 def read_arguments(raw: str) -> dict[str, Any] | None:
     """Read the arguments as a model wrote them.
 
@@ -27,6 +37,9 @@ def read_arguments(raw: str) -> dict[str, Any] | None:
     """
     try:
         value = json.loads(raw, parse_constant=_refuse) if raw.strip() else {}
+        if isinstance(value, str):
+            # Some servers write the JSON of the arguments as JSON once more.
+            value = json.loads(value, parse_constant=_refuse)
     except (ValueError, RecursionError):
         return None
     if not isinstance(value, dict) or _is_deeper(value, _DEEPEST):
@@ -40,12 +53,8 @@ def wire_arguments(call: ToolCall) -> dict[str, Any]:
     Servers refuse a conversation, now and ever after, in which a call carries anything but a JSON
     object; so an unreadable text is shown to the model as a string in an object.
     """
-    if call.arguments is not None:
-        readable = read_arguments(dump_arguments(call.arguments))
-        if readable is not None:
-            return readable
-    raw = call.raw or dump_arguments(call.arguments or {})
-    return {UNREADABLE: encodable_text(raw)}
+    readable = None if call.arguments is None else clean_arguments(call.arguments)
+    return {UNREADABLE: encodable_text(call.raw)} if readable is None else readable
 
 
 def dump_arguments(arguments: Mapping[str, Any]) -> str:
@@ -59,9 +68,9 @@ def encodable_text(text: str) -> str:
 
 
 def _is_deeper(value: Any, levels: int) -> bool:
-    if not isinstance(value, dict | list):
+    if not isinstance(value, Mapping | list | tuple):
         return False
-    inner = value.values() if isinstance(value, dict) else value
+    inner = value.values() if isinstance(value, Mapping) else value
     return levels == 0 or any(_is_deeper(item, levels - 1) for item in inner)
 
 

@@ -58,6 +58,8 @@ class ToolCall:
     """The arguments, or None if they could not be read as a JSON object."""
     raw: str = ""
     """The arguments as the model wrote them."""
+    written_name: str = ""
+    """The name as the model wrote it, where it was read as that of the tool it means."""
 
 
 @dataclass(frozen=True, slots=True)

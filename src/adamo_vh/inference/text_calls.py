@@ -1,61 +1,82 @@
-"""Recognise a tool call that a model wrote into its text instead of calling the tool.
+"""Read a tool call that a model wrote into its text instead of calling the tool.
 
-Small and local models often answer with the JSON of a call, in a code fence or in ``<tool_call>``
-tags. Only the plain case counts: exactly one JSON object in the text, on lines of its own, in the
-shape of a call, naming a tool on offer. Everything else stays text.
+Servers leave a call in the text when they do not know the model's format, and models fall back to
+the formats that they were trained on. A call that is written with its marks, or as JSON or Python
+on lines of its own, is read; whatever else looks like a call is said to be one that cannot be
+read. So no call is ever taken for a final answer, and no mention of one for a call.
 """
 
 from __future__ import annotations
 
 import hashlib
-import json
 import re
-from collections.abc import Collection, Iterator
-from typing import Any
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 
-from adamo_vh.inference.arguments import dump_arguments, encodable_text, read_arguments
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.arguments import dump_arguments, encodable_text
+from adamo_vh.inference.call_syntax import GAP, MARK, OPENING, Syntax, WrittenCall, suspicious
+from adamo_vh.inference.json_scan import JsonScan, whole_json
 from adamo_vh.inference.messages import AIMessage, ToolCall
+from adamo_vh.inference.tool_names import NAMESPACE
 
-_SHAPES = (
-    ("name", "arguments"),
-    ("name", "parameters"),
-    ("name", "args"),
-    ("tool", "args"),
-    ("tool", "arguments"),
-    ("function", "arguments"),
-)
-"""Pairs of keys under which models write the tool and its arguments."""
-
-_IGNORED = frozenset({"id", "type"})
-
-_BEFORE = re.compile(r"(?:\A|\n)[ \t]*(?:```\w*|<tool_call>)?\s*\Z")
-_AFTER = re.compile(r"\A[ \t]*\s*(?:```|</tool_call>)?[ \t]*(?=\n|\Z)")
-_DECODER = json.JSONDecoder()
+_BROKEN = "holds a call in its text that is not complete or not well formed."
+_INLINE = "holds a call in the middle of its text, so that it is not clear whether it is meant."
+_SEVERAL = "holds calls with other text between them, so that it is not clear which is meant."
+_NAMELESS = "holds arguments without the name of a tool."
+_FENCE = re.compile(r"```[\w+-]*")
+_LABEL = re.compile(r"\A\s*+(?:\*\*)?Thought(?:\*\*)?\s?:(?:\*\*)?", re.IGNORECASE)
+_LONGEST_NAME = 60
 
 
-def recognise_call(text: str, tools: Collection[str], taken: Collection[str]) -> AIMessage | None:
-    """Read a call that leaked into the text.
+@dataclass(frozen=True, slots=True)
+class UnparsedCall:
+    """A text that holds a call which cannot be read."""
+
+    problem: str
+    """What is wrong, as a sentence without its subject, for the model."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where calls stand in a text."""
+
+    start: int
+    end: int
+    calls: tuple[WrittenCall, ...]
+    is_marked: bool
+
+
+def read_calls(
+    text: str, tools: Sequence[ToolSchema], taken: Collection[str]
+) -> AIMessage | UnparsedCall | None:
+    """Read the calls that stand in a text.
 
     Args:
-        text: Text of an answer without a native call.
-        tools: Names of the tools on offer.
-        taken: Call ids of the conversation, which the new id must differ from.
+        text: Text of an answer without a native call, and without reasoning.
+        tools: The tools on offer.
+        taken: Call ids of the conversation, which the new ids must differ from.
 
     Returns:
-        The call, with the rest of the text as its note; None if the text is not plainly a call.
+        The calls, with the rest of the text as their note; or that there is one which cannot be
+        read; None if there is none.
     """
-    found = list(_objects(text))
-    if len(found) != 1:
+    places = list(_places(text, tools))
+    rest = _rest(text, places)
+    calls = [call for place in places for call in place.calls]
+    if problem := _problem(text, places, rest, tools):
+        return UnparsedCall(problem)
+    if not calls:
         return None
-    ((start, end, value),) = found
-    before, after = _BEFORE.search(text[:start]), _AFTER.match(text[end:])
-    call = _read(value, tools)
-    if before is None or after is None or call is None:
-        return None
-    head, tail = text[: before.start()].strip(), text[end + after.end() :].strip()
-    note = "\n".join(part for part in (head, tail) if part)
-    name, arguments = call
-    return AIMessage(note, (ToolCall(fresh_id(text, taken), name, arguments, text[start:end]),))
+    note = "\n".join(line for piece in rest if (line := _as_note(piece)))
+    ids: set[str] = {*taken}
+    read: list[ToolCall] = []
+    seed = fresh_id(text, ())
+    for number, call in enumerate(calls):
+        call_id = fresh_id(f"{seed} {number}", ids)
+        ids.add(call_id)
+        read.append(ToolCall(call_id, call.name, call.arguments, dump_arguments(call.arguments)))
+    return AIMessage(note, tuple(read))
 
 
 def fresh_id(seed: str, taken: Collection[str]) -> str:
@@ -68,32 +89,88 @@ def fresh_id(seed: str, taken: Collection[str]) -> str:
         number += 1
 
 
-def _objects(text: str) -> Iterator[tuple[int, int, dict[str, Any]]]:
-    """Outermost JSON objects of a text, with where they start and end."""
-    position = text.find("{")
-    while position >= 0:
-        try:
-            value, end = _DECODER.raw_decode(text, position)
-        except (ValueError, RecursionError):
-            end = position + 1
-        else:
-            yield position, end, value
-        position = text.find("{", end)
-
-
-def _read(value: dict[str, Any], tools: Collection[str]) -> tuple[str, dict[str, Any]] | None:
-    inner = value.get("function")
-    if isinstance(inner, dict) and value.keys() - _IGNORED == {"function"}:
-        value = inner
-    keys = value.keys() - _IGNORED
-    for name_key, arguments_key in _SHAPES:
-        if keys != {name_key, arguments_key}:
+def _places(text: str, tools: Sequence[ToolSchema]) -> Iterator[_Place]:
+    """Where calls stand, from the beginning to the end, with all marks and fences round them."""
+    syntax, anchor = Syntax(text, tools), _anchor(tools)
+    position = 0
+    while found := anchor.search(text, position):
+        start, is_mark = found.start(), found["mark"] is not None
+        begin = _behind_gap(text, start)
+        read = syntax.at(begin) if begin < len(text) else None
+        if read is None:
+            position = max(begin, start + 1)
             continue
-        name, arguments = value[name_key], value[arguments_key]
-        if not isinstance(name, str) or name not in tools:
-            return None
-        if isinstance(arguments, dict):
-            arguments = dump_arguments(arguments)
-        readable = read_arguments(arguments) if isinstance(arguments, str) else None
-        return None if readable is None else (name, readable)
-    return None
+        is_marked = is_mark or OPENING.match(text, begin) is not None
+        # A fence or a list of calls goes on with the next one: marks hold for all of them.
+        position = _behind_gap(text, read[0])
+        yield _Place(start, position, tuple(read[1]), is_marked)
+
+
+def _anchor(tools: Sequence[ToolSchema]) -> re.Pattern[str]:
+    """Where a call may begin."""
+    names = "|".join(re.escape(tool.name) for tool in tools) or r"(?!)"
+    return re.compile(
+        rf"(?P<mark>{MARK.pattern})|{OPENING.pattern}|```|\[(?=\s{{0,9}}[\w{{])|\{{"
+        rf"|(?<![\w.])(?:print\()?(?:{NAMESPACE})?(?:{names})\b|\bAction\s?:",
+        re.IGNORECASE,
+    )
+
+
+def _behind_gap(text: str, position: int) -> int:
+    gap = GAP.match(text, position)
+    return gap.end() if gap else position
+
+
+def _rest(text: str, places: Sequence[_Place]) -> list[str]:
+    """What stands before, between and after the calls."""
+    ends = [0, *(place.end for place in places)]
+    starts = [*(place.start for place in places), len(text)]
+    return [text[end:start] for end, start in zip(ends, starts, strict=True)]
+
+
+def _as_note(piece: str) -> str:
+    """A piece of text beside calls as a note; empty if there is no word in it."""
+    bare = _LABEL.sub("", _FENCE.sub("", piece)).strip()
+    return bare if any(letter.isalnum() for letter in bare) else ""
+
+
+def _problem(
+    text: str, places: Sequence[_Place], rest: Sequence[str], tools: Sequence[ToolSchema]
+) -> str:
+    """Why the calls of a text cannot be carried out; empty if they can, or if there are none."""
+    unknown = [call for place in places for call in place.calls if not call.is_known]
+    if unknown:
+        name = unknown[0].name[:_LONGEST_NAME]
+        return f'holds a call of "{name}" in its text, and there is no such tool.'
+    looks_like_call = suspicious(tools)
+    if any(MARK.search(piece) or looks_like_call.search(piece) for piece in rest):
+        return _BROKEN
+    if not places:
+        return _NAMELESS if _is_bare_arguments(text, tools) else ""
+    plain = [place for place in places if not place.is_marked]
+    if any(not _stands_alone(text, place) for place in plain):
+        return _INLINE
+    if plain and any(piece.strip(" \n\r\t,;`") for piece in rest[1:-1]):
+        return _SEVERAL
+    has_more = any(True for piece in rest for _ in JsonScan(piece).objects())
+    return _SEVERAL if plain and has_more else ""
+
+
+def _stands_alone(text: str, place: _Place) -> bool:
+    """Whether nothing else is on the lines of a call."""
+    before = text[text.rfind("\n", 0, place.start) + 1 : place.start]
+    inside = text[place.start : place.end].rstrip()
+    if inside.endswith("```") or "\n" in text[place.start + len(inside) : place.end]:
+        after = ""
+    else:
+        line_end = text.find("\n", place.end)
+        after = text[place.end : len(text) if line_end < 0 else line_end]
+    return not before.strip(" \t>*`-") and not after.strip(" \t.,;`")
+
+
+def _is_bare_arguments(text: str, tools: Sequence[ToolSchema]) -> bool:
+    """Whether a text is nothing but a JSON object with arguments of a tool."""
+    value = whole_json(_FENCE.sub("", text))
+    if not isinstance(value, dict) or not value:
+        return False
+    return any(value.keys() <= tool.parameters.get("properties", {}).keys() for tool in tools)

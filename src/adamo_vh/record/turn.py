@@ -50,6 +50,14 @@ class Turn:
         return not (self.wishes or self.unreadable or self.message.text.strip())
 
     @property
+    def goes_back(self) -> bool:
+        """Whether the model is shown it again: not if a filter refused it, nor if it is empty.
+
+        A conversation with a refused answer in it is refused ever after.
+        """
+        return self.ending is not Ending.FILTERED and bool(self.wishes or self.message.text.strip())
+
+    @property
     def is_prose(self) -> bool:
         """Whether it is text alone: the paper's way to end an episode."""
         return not (self.wishes or self.unreadable)

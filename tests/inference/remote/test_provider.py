@@ -186,11 +186,9 @@ def test_an_empty_answer_is_an_empty_message(text: str | None) -> None:
     assert reply.message == AIMessage("")
 
 
-def test_thinking_is_left_out_and_a_refusal_is_text() -> None:
+def test_thinking_is_left_out() -> None:
     reply, _ = ask([completion("<think>hm</think>I go.", reasoning_content="because")])
     assert reply.message.text == "I go."
-    reply, _ = ask([completion(None, refusal="I cannot do that.")])
-    assert reply.message == AIMessage("I cannot do that.")
 
 
 def test_a_leaked_call_is_recognised_unless_there_is_a_native_one() -> None:

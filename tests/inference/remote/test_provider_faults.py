@@ -115,7 +115,6 @@ def test_google_asks_to_wait_in_its_error_details() -> None:
 
 PERMANENT = {
     "no eyes": "image input is not supported - hint: you may need to provide the mmproj",
-    "bad history": "Failed to parse tool call arguments as JSON: unexpected end of input",
     "template": "Jinja Exception: Conversation roles must alternate",
     "no template": "Unable to render the chat template",
 }

@@ -197,13 +197,6 @@ def test_an_empty_reply_can_be_answered(dialect: Dialect) -> None:
     assert not [p for p in told.said() if p.role == "assistant"]
 
 
-def test_a_refusal_is_an_answer(dialect: Dialect) -> None:
-    told = tell(dialect, [dialect.refusal()])
-    assert not told.reply.message.calls
-    refused = "I will not." if dialect.name.startswith("openai") else "(Refused: "
-    assert told.reply.message.text.startswith(refused)
-
-
 def test_usage_means_the_same_everywhere(dialect: Dialect) -> None:
     told = tell(dialect, [dialect.answer("ok")])
     assert told.reply.usage == Usage(INPUT, OUTPUT, CACHED, REASONING)

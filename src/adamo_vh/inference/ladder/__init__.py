@@ -25,10 +25,10 @@ from adamo_vh.inference.ladder.steps import (
     takes_note,
 )
 from adamo_vh.inference.messages import AIMessage, HumanMessage, Message, TextPart, ToolCall
-from adamo_vh.inference.model import ModelInfo, Reply, Rung, Sampling
+from adamo_vh.inference.model import Ending, ModelInfo, Reply, Rung, Sampling
 from adamo_vh.inference.prompts import render
 from adamo_vh.inference.remote.capabilities import Capabilities
-from adamo_vh.inference.text_calls import fresh_id, recognise_call
+from adamo_vh.inference.text_calls import fresh_id, read_calls
 
 _JSON, _REACT = JsonForm(), ReactForm()
 _FORMS: dict[Rung, tuple[Form, ...]] = {
@@ -98,34 +98,61 @@ class Ladder:
         form = self._forms[0]
         prompt, schema = rewritten(messages, tools, form), form.schema(tools)
         reply = self._inner.complete(prompt, (), sampling, schema=schema)
-        outcome = self._read(reply.message, messages, tools)
-        if isinstance(outcome, Unreadable):
+        outcome = self._read(reply, messages, tools)
+        if isinstance(outcome, Unreadable) and reply.ending is not Ending.FILTERED:
             prompt = merged([*prompt, *_repair(reply.message, outcome, form, tools)])
             again = self._inner.complete(prompt, (), sampling, schema=schema)
             reply = _together(reply, again)
-            outcome = self._read(again.message, messages, tools)
+            outcome = self._read(again, messages, tools)
         if isinstance(outcome, AIMessage):
-            return replace(reply, message=outcome, rung=self._rung)
-        said = replace(reply.message, kept=UNREADABLE + reply.message.kept)
-        return replace(reply, message=said, rung=self._rung, unreadable=outcome.problem)
+            ending = Ending.CALL if outcome.calls else Ending.ANSWER
+            return replace(reply, message=outcome, rung=self._rung, unreadable="", ending=ending)
+        return replace(
+            reply,
+            message=replace(reply.message, kept=UNREADABLE + reply.message.kept),
+            rung=self._rung,
+            unreadable=reply.unreadable or f"could not be read: {outcome.problem}",
+            ending=reply.ending if reply.ending.is_failure else Ending.UNPARSED_CALL,
+        )
 
     def _read(
-        self, said: AIMessage, messages: Sequence[Message], tools: Sequence[ToolSchema]
+        self, reply: Reply, messages: Sequence[Message], tools: Sequence[ToolSchema]
     ) -> AIMessage | Unreadable:
         """What a reply comes to: a note with a call, or a final answer."""
-        if said.calls:  # Some servers recognise calls although no tool was on offer.
+        said = reply.message
+        if said.calls and reply.ending is Ending.CALL:
+            # Some servers recognise calls although no tool was on offer.
             return replace(said, calls=said.calls[:1])
-        outcomes = [form.read(said.text, tools) for form in self._forms]
         taken = {call.id for m in messages if isinstance(m, AIMessage) for call in m.calls}
+        step = self._step(said.text, taken, tools)
+        if isinstance(step, Step) and _may_count(step, reply.ending):
+            return replace(_message(step, said.text, taken, tools), kept=said.kept)
+        if reply.unreadable or isinstance(step, Step):
+            return Unreadable(f"it {reply.unreadable}")
+        return step
+
+    def _step(self, text: str, taken: set[str], tools: Sequence[ToolSchema]) -> Step | Unreadable:
+        """The one step that a text holds, in whatever form."""
+        outcomes = [form.read(text, tools) for form in self._forms]
         for outcome in outcomes:
             if isinstance(outcome, Step):
-                return replace(_message(outcome, said.text, taken, tools), kept=said.kept)
-        leaked = recognise_call(said.text, {tool.name for tool in tools}, taken)
-        if leaked is None:
-            return outcomes[0] if isinstance(outcomes[0], Unreadable) else Unreadable("")
-        (call,) = leaked.calls
-        step = Step(leaked.text, call.name, call.arguments or {})
-        return replace(_message(step, said.text, taken, tools), kept=said.kept)
+                return outcome
+        leaked = read_calls(text, tools, taken)
+        if isinstance(leaked, AIMessage):
+            call = leaked.calls[0]
+            return Step(leaked.text, call.name, call.arguments or {})
+        return outcomes[0]
+
+
+def _may_count(step: Step, ending: Ending) -> bool:
+    """Whether a step may be taken out of a reply that ended like this.
+
+    A model that does not stop behind its step, as it was told to, is cut off there; the step is
+    whole. Nothing else that was cut off is, and what a filter has touched counts for nothing.
+    """
+    if ending is Ending.CUT_OFF:
+        return step.action is not None and step.is_whole
+    return ending is not Ending.FILTERED
 
 
 def _message(step: Step, text: str, taken: set[str], tools: Sequence[ToolSchema]) -> AIMessage:

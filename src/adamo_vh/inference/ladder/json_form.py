@@ -12,13 +12,14 @@ from typing import Any
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.arguments import dump_arguments, encodable_text, read_arguments
+from adamo_vh.inference.json_scan import JsonScan
+from adamo_vh.inference.ladder.labels import without_thoughts
 from adamo_vh.inference.ladder.steps import (
     FINISH,
     Step,
     Unreadable,
     action_step,
     ends_by_answer,
-    json_objects,
     own_parameters,
 )
 from adamo_vh.inference.model import Rung
@@ -65,14 +66,33 @@ class JsonForm:
         return json.dumps(written, ensure_ascii=False)
 
     def read(self, text: str, tools: Sequence[ToolSchema]) -> Step | Unreadable:
-        """The first object of the text that is a step; flat ones count too."""
+        """The first object of the text that is a step; flat ones count too.
+
+        One in the middle of a sentence, or one that is followed by other words and another step,
+        may be a draft.
+        """
         problem = "there is no complete JSON object in it."
-        for value in json_objects(text):
+        text = without_thoughts(text)
+        found: list[tuple[int, int, Step]] = []
+        for start, end, value in JsonScan(text).objects():
             outcome = _read(value, tools)
             if isinstance(outcome, Step):
-                return outcome
-            problem = outcome.problem
-        return Unreadable(problem)
+                found.append((start, end, outcome))
+            else:
+                problem = outcome.problem
+        if not found:
+            return Unreadable(problem)
+        _, end, step = found[0]
+        if _words(text[end:].partition("\n")[0]):
+            return Unreadable("its JSON object stands in the middle of other text.")
+        if any(other != step and _words(text[end:start]) for start, _, other in found[1:]):
+            return Unreadable("it holds several JSON objects with other text between them.")
+        return step
+
+
+def _words(text: str) -> bool:
+    """Whether there is more in a text than the marks of a code fence."""
+    return any(letter.isalnum() for letter in text.replace("```json", ""))
 
 
 def _read(value: Mapping[str, Any], tools: Sequence[ToolSchema]) -> Step | Unreadable:

@@ -7,25 +7,28 @@ from collections.abc import Iterator, Sequence
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.arguments import dump_arguments, read_arguments
+from adamo_vh.inference.json_scan import JsonScan
+from adamo_vh.inference.ladder.labels import (
+    ACTION,
+    ANSWER,
+    INPUT,
+    OBSERVATION,
+    THOUGHT,
+    sections,
+)
 from adamo_vh.inference.ladder.steps import (
     FINISH,
     Step,
     Unreadable,
     action_step,
     ends_by_answer,
-    json_objects,
     known_tool,
     own_parameters,
 )
 from adamo_vh.inference.model import Rung
 
-_LABEL = re.compile(
-    r"^[ \t>*_#`-]*(thought|action[ _]?input|action|observation|final[ _]?answer)[ \t*_`]*:[ \t*]*",
-    re.IGNORECASE | re.MULTILINE,
-)
-_INPUT_ON_THE_SAME_LINE = re.compile(r"(?<=\S)[ \t,;]+(?=action[ _]?input[ \t*]*:)", re.IGNORECASE)
-_NAME = re.compile(r"[\s`*\"'\[(<]*([^\W\d]\w*)")
-_FENCE = re.compile(r"^\s*```\w*\s*$", re.MULTILINE)
+_NAME = re.compile(r"[\s`*\"'\[(<]*+((?:functions?\.)?[^\W\d]\w*)")
+_FENCE = re.compile(r"^[ \t]*+```\w*+[ \t\r]*+$", re.MULTILINE)
 _NOTHING = frozenset({"", "none", "null", "n/a", "()", "no input", "no arguments"})
 
 
@@ -50,18 +53,22 @@ class ReactForm:
     def read(self, text: str, tools: Sequence[ToolSchema]) -> Step | Unreadable:
         """The first action or final answer of the text.
 
-        What comes after it is left out: models like to go on with results that they make up.
+        What comes after it is left out: models like to go on with results that they make up. An
+        action that is taken back in words, with another one behind it, is none.
         """
         thoughts: list[str] = []
-        sections = _sections(_INPUT_ON_THE_SAME_LINE.sub("\n", text))
-        for label, content in sections:
-            if label == "action":
-                following, given = next(sections, ("", ""))
-                given = given if following == "actioninput" else ""
-                return _act(" ".join(thoughts), content, given, tools)
-            if label == "finalanswer":
+        found = sections(text)
+        for label, content in found:
+            if label == ACTION:
+                following, given = next(found, ("", ""))
+                given = given if following == INPUT else ""
+                step = _act(" ".join(thoughts), content, given, tools)
+                if _taken_back(given, found):
+                    return Unreadable("it holds several actions with other text between them.")
+                return step
+            if label == ANSWER:
                 return Step(" ".join(thoughts), answer=_bare(content))
-            if label in ("", "thought") and (thought := _bare(content)):
+            if label in ("", THOUGHT) and (thought := _bare(content)):
                 thoughts.append(thought)
         if not text.strip():
             return Unreadable("it was empty.")
@@ -73,15 +80,6 @@ class ReactForm:
         )
 
 
-def _sections(text: str) -> Iterator[tuple[str, str]]:
-    """Labels in small letters without spaces, with what follows each; "" before the first."""
-    label, begin = "", 0
-    for found in _LABEL.finditer(text):
-        yield label, text[begin : found.start()]
-        label, begin = re.sub(r"[ _]", "", found[1]).lower(), found.end()
-    yield label, text[begin:]
-
-
 def _act(thought: str, content: str, given: str, tools: Sequence[ToolSchema]) -> Step | Unreadable:
     found = _NAME.match(content)
     if found is None:
@@ -90,16 +88,24 @@ def _act(thought: str, content: str, given: str, tools: Sequence[ToolSchema]) ->
     # Some write the arguments right behind the name: Look {"x": 0} or Look({"x": 0}).
     source = given or content[found.end() :]
     tool = known_tool(name, tools)
-    objects = list(json_objects(source))
+    objects = list(JsonScan(source).objects())
     if objects:
-        args = read_arguments(dump_arguments(objects[0]))
+        args = read_arguments(dump_arguments(objects[0][2]))
         if args is not None:
             return action_step(thought, name, args, tools)
     elif _bare(source).lower() in _NOTHING and not (tool and own_parameters(tool)["required"]):
-        return action_step(thought, name, {}, tools)
+        return action_step(thought, name, {}, tools, is_whole=False)
     elif tool is None and name.casefold() == FINISH:
         return Step(thought, answer=_bare(source))
     return Unreadable(f'the "Action Input:" of {name[:60]} is no complete JSON object.')
+
+
+def _taken_back(given: str, following: Iterator[tuple[str, str]]) -> bool:
+    """Whether there are words behind the arguments of an action, and then another action."""
+    ends = [end for _, end, _ in JsonScan(given).objects()]
+    if not ends or not any(letter.isalnum() for letter in given[ends[0] :]):
+        return False
+    return next((label for label, _ in following if label in (ACTION, OBSERVATION)), "") == ACTION
 
 
 def _bare(text: str) -> str:

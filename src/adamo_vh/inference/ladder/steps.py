@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NoReturn, Protocol
+from typing import Any, Protocol
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.model import Rung
+from adamo_vh.inference.tool_names import meant_tool
 
 FINISH = "finish"
 """The action that ends an episode with an answer, unless a tool of this name does."""
@@ -26,6 +26,8 @@ class Step:
     args: Mapping[str, Any] = field(default_factory=dict)
     answer: str = ""
     """The final answer."""
+    is_whole: bool = field(default=False, compare=False)
+    """Whether its end can be seen: the closing bracket of its arguments."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,37 +88,21 @@ def own_parameters(tool: ToolSchema) -> dict[str, Any]:
 
 
 def known_tool(name: str, tools: Sequence[ToolSchema]) -> ToolSchema | None:
-    """The tool of a name, however its letters are cased."""
-    exact = (tool for tool in tools if tool.name == name)
-    alike = (tool for tool in tools if tool.name.casefold() == name.casefold())
-    return next(exact, None) or next(alike, None)
+    """The tool that a name means."""
+    meant = meant_tool(name, (tool.name for tool in tools))
+    return next((tool for tool in tools if tool.name == meant), None)
 
 
 def action_step(
-    thought: str, name: str, args: Mapping[str, Any], tools: Sequence[ToolSchema]
+    thought: str,
+    name: str,
+    args: Mapping[str, Any],
+    tools: Sequence[ToolSchema],
+    *,
+    is_whole: bool = True,
 ) -> Step:
     """The step that an action comes to; `FINISH` is an answer if no tool is called so."""
     tool = known_tool(name, tools)
     if tool is None and name.casefold() == FINISH:
         return Step(thought, answer=str(args.get("answer") or "").strip() or thought)
-    return Step(thought, name if tool is None else tool.name, args)
-
-
-def json_objects(text: str) -> Iterator[dict[str, Any]]:
-    """The outermost JSON objects of a text."""
-    position = text.find("{")
-    while position >= 0:
-        try:
-            value, end = _DECODER.raw_decode(text, position)
-        except (ValueError, RecursionError):
-            end = position + 1
-        else:
-            yield value
-        position = text.find("{", end)
-
-
-def _refuse(constant: str) -> NoReturn:
-    raise ValueError(f"{constant} is not JSON")
-
-
-_DECODER = json.JSONDecoder(parse_constant=_refuse)
+    return Step(thought, name if tool is None else tool.name, args, is_whole=is_whole)

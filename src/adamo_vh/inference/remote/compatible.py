@@ -56,6 +56,7 @@ def _filled(data: dict[str, Any]) -> dict[str, Any]:
         {
             **choice,
             "index": choice.get("index") or 0,
+            "finish_reason": choice.get("finish_reason") or "stop",
             "message": _filled_message(choice.get("message")),
         }
         for choice in data["choices"]
@@ -66,7 +67,10 @@ def _filled(data: dict[str, Any]) -> dict[str, Any]:
 def _filled_message(message: Any) -> Any:
     if not isinstance(message, dict):
         return message
-    calls = message.get("tool_calls")
+    calls, legacy = message.get("tool_calls"), message.get("function_call")
+    if not calls and isinstance(legacy, dict):
+        # The way of calls before there were tools.
+        calls = [{"function": legacy}]
     return {
         **message,
         "role": "assistant",

@@ -11,16 +11,18 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.cost.prices import cost_usd
-from adamo_vh.inference.messages import AIMessage, Message
+from adamo_vh.inference.messages import Message
 from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Rung, Sampling, Usage
 from adamo_vh.inference.remote.background import run_in_background
 from adamo_vh.inference.remote.clients import Connection, connect
+from adamo_vh.inference.remote.endings import refused_call
 from adamo_vh.inference.remote.endpoint import parse_endpoint
 from adamo_vh.inference.remote.exchange import Exchange, sent_settings, watch, watching_client
 from adamo_vh.inference.remote.faults import read_error, read_exchange, refused_setting
+from adamo_vh.inference.remote.replies import Reading, read_refused_call, read_response
 from adamo_vh.inference.remote.retry import Failure, RetryPolicy, run_with_retries
 from adamo_vh.inference.remote.settings import EXACT, Settings
-from adamo_vh.inference.remote.wire import from_usage, from_wire, to_parameters, to_wire
+from adamo_vh.inference.remote.wire import from_usage, to_parameters, to_wire
 
 if TYPE_CHECKING:
     import httpx2
@@ -34,6 +36,7 @@ class _Asking:
     """One answer in the making."""
 
     messages: Sequence[Message]
+    tools: Sequence[ToolSchema]
     parameters: ModelRequestParameters
     sampling: Sampling
     requests: int = 0
@@ -46,11 +49,9 @@ class _Asking:
 
 @dataclass(frozen=True, slots=True)
 class _Answer:
-    """An answer in neutral words."""
+    """An answer, and what it took."""
 
-    message: AIMessage
-    leaked: bool
-    """Whether its call was written into the text."""
+    reading: Reading
     usage: Usage
 
 
@@ -155,16 +156,16 @@ class ProviderModel:
         Raises:
             ProviderError: The request was refused, or failed after all retries.
         """
-        asking = _Asking(messages, to_parameters(tools, schema), sampling)
+        asking = _Asking(messages, tools, to_parameters(tools, schema), sampling)
         answer = run_with_retries(
             self._retry,
             self._name,
             lambda: self._try(asking),
             adapt=lambda failure: bool(failure.refused),
         )
-        usage = answer.value.usage
+        reading, usage = answer.value.reading, answer.value.usage
         return Reply(
-            answer.value.message,
+            reading.message,
             usage,
             # The first use of a library takes seconds to load, which is not the model's time.
             asking.seconds or answer.seconds,
@@ -172,7 +173,10 @@ class ProviderModel:
             requests=asking.requests,
             cost_usd=cost_usd(self._name, usage),
             settings=asking.settings or {},
-            rung=Rung.LEAKED if answer.value.leaked else Rung.NATIVE,
+            rung=Rung.LEAKED if reading.leaked else Rung.NATIVE,
+            unreadable=reading.problem,
+            ending=reading.ending,
+            finish_reason=reading.finish_reason,
         )
 
     def close(self) -> None:
@@ -207,7 +211,7 @@ class ProviderModel:
             response = run_in_background(
                 self._request(prompt, asking.parameters, settings, exchange)
             )
-            outcome = self._read(response, asking)
+            outcome = self._read(response, exchange, asking)
         except Exception as error:
             # The libraries' errors have no common base, and an answer that is JSON but no
             # completion ends in any error at all, deep in their reading code. It is handed on as
@@ -223,19 +227,25 @@ class ProviderModel:
         failure = read_exchange(exchange)
         if failure is None:
             return outcome
+        if refused := refused_call(exchange.body, exchange.text):
+            # The server did its work; it was the model that wrote what cannot be read.
+            return _Answer(read_refused_call(*refused, asking.messages, asking.tools), Usage())
         if asking.sampling.exact and refused_setting(exchange, EXACT):
             return _inexact(failure.text)
         return replace(
             failure, refused=self._settings.take_refusal(exchange, settings, asking.sampling)
         )
 
-    def _read(self, response: ModelResponse, asking: _Asking) -> _Answer:
-        names = {tool.name for tool in asking.parameters.function_tools}
-        takes = self._connection.takes_thinking
-        message, leaked = from_wire(
-            response, asking.messages, names, self._source, takes_thinking=takes
+    def _read(self, response: ModelResponse, exchange: Exchange, asking: _Asking) -> _Answer:
+        reading = read_response(
+            response,
+            exchange.body,
+            asking.messages,
+            asking.tools,
+            self._source,
+            takes_thinking=self._connection.takes_thinking,
         )
-        return _Answer(message, leaked, from_usage(response.usage))
+        return _Answer(reading, from_usage(response.usage))
 
     async def _request(
         self,

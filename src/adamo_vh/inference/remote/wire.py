@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.arguments import dump_arguments, encodable_text, read_arguments
+from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
@@ -15,13 +15,11 @@ from adamo_vh.inference.messages import (
     Part,
     SystemMessage,
     TextPart,
-    ToolCall,
     ToolMessage,
 )
 from adamo_vh.inference.model import Usage
 from adamo_vh.inference.remote.clients import Connection
-from adamo_vh.inference.remote.kept import dump_kept, to_response
-from adamo_vh.inference.text_calls import fresh_id, recognise_call
+from adamo_vh.inference.remote.kept import to_response
 
 if TYPE_CHECKING:
     from pydantic_ai import messages as wire
@@ -30,7 +28,6 @@ if TYPE_CHECKING:
 
 _Input = SystemMessage | HumanMessage | ToolMessage
 
-_MADE_UP = "pyd_ai_"
 _NO_RESULT = "Not executed."
 CAPTION = "Picture from"
 """Says whose picture follows, where it cannot be in the result itself."""
@@ -193,71 +190,6 @@ def to_parameters(
             for tool in tools
         ],
     )
-
-
-def from_wire(
-    response: wire.ModelResponse,
-    messages: Sequence[Message],
-    tools: Collection[str],
-    source: str,
-    *,
-    takes_thinking: bool,
-) -> tuple[AIMessage, bool]:
-    """Translate an answer.
-
-    Thinking parts are no part of the text. A refusal counts as text. If there is no native call
-    but a call leaked into the text, it is recognised.
-
-    Args:
-        response: The answer.
-        messages: The prompt it answers; new call ids differ from those in it.
-        tools: Names of the tools on offer.
-        source: Who gave the answer; see `kept`.
-        takes_thinking: Whether thinking can go back; see `kept`.
-
-    Returns:
-        The answer, and whether its call had leaked into the text.
-    """
-    from pydantic_ai import messages as wire
-
-    texts = [part.content for part in response.parts if isinstance(part, wire.TextPart)]
-    text = encodable_text("\n\n".join(texts)).strip()
-    taken = {call.id for m in messages if isinstance(m, AIMessage) for call in m.calls}
-    calls: list[ToolCall] = []
-    for part in response.parts:
-        if isinstance(part, wire.ToolCallPart):
-            calls.append(_call(part, taken))
-            taken.add(calls[-1].id)
-    kept = dump_kept(response, source, takes_thinking=takes_thinking)
-    if calls:
-        return AIMessage(text, tuple(calls), kept), False
-    if not text:
-        return AIMessage(_refusal(response), kept=kept), False
-    leaked = recognise_call(text, tools, taken)
-    if leaked is None:
-        return AIMessage(text, kept=kept), False
-    return AIMessage(leaked.text, leaked.calls, kept), True
-
-
-def _refusal(response: wire.ModelResponse) -> str:
-    """What a model that refused has said; empty if it did not refuse."""
-    details = response.provider_details or {}
-    if refusal := details.get("refusal"):
-        return encodable_text(str(refusal))
-    if response.finish_reason != "content_filter":
-        return ""
-    return f"(Refused: {details.get('finish_reason') or 'content filter'}.)"
-
-
-def _call(part: wire.ToolCallPart, taken: Collection[str]) -> ToolCall:
-    raw = part.args if isinstance(part.args, str) else dump_arguments(part.args or {})
-    # Some servers number calls anew in each answer; an id that means two calls confuses others.
-    # Some give none; the library then makes one up at random, ours follows from the call.
-    call_id = encodable_text(part.tool_call_id)
-    if call_id in taken or call_id.startswith(_MADE_UP):
-        call_id = fresh_id(f"{part.tool_name} {raw}", taken)
-    name = encodable_text(part.tool_name)
-    return ToolCall(call_id, name, read_arguments(raw), encodable_text(raw))
 
 
 _REASONING = ("reasoning_tokens", "thoughts_tokens", "thinking_tokens")

@@ -1,0 +1,57 @@
+"""Make a reply safe to keep, whoever gave it: a server, a script, or a model of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from adamo_vh.action import ToolSchema
+from adamo_vh.inference.arguments import clean_arguments, encodable_text
+from adamo_vh.inference.messages import ToolCall
+from adamo_vh.inference.model import Reply
+from adamo_vh.inference.tool_names import meant_tool
+
+
+def tidied(reply: Reply, tools: Iterable[ToolSchema]) -> Reply:
+    """A reply that can be recorded and sent, with each call under the name of the tool it means.
+
+    Text that UTF-8 cannot hold is replaced. Arguments that are no JSON, or are nested beyond
+    reason, count as unreadable.
+
+    Args:
+        reply: As the model gave it.
+        tools: The tools on offer.
+    """
+    names = [tool.name for tool in tools]
+    message = replace(
+        reply.message,
+        text=encodable_text(reply.message.text),
+        calls=tuple(_tidied(call, names) for call in reply.message.calls),
+    )
+    return replace(
+        reply,
+        message=message,
+        unreadable=encodable_text(reply.unreadable),
+        finish_reason=encodable_text(reply.finish_reason),
+    )
+
+
+def _tidied(call: ToolCall, names: Iterable[str]) -> ToolCall:
+    written = encodable_text(call.name)
+    name = meant_tool(written, names) or written
+    arguments = None if call.arguments is None else clean_arguments(call.arguments)
+    raw = encodable_text(call.raw)
+    if arguments is None and not raw:
+        raw = encodable_text(repr(call.arguments)[:_LONGEST_RAW])
+    return replace(
+        call,
+        id=encodable_text(call.id),
+        name=name,
+        arguments=arguments,
+        raw=raw,
+        written_name=call.written_name or (written if written != name else ""),
+    )
+
+
+_LONGEST_RAW = 2000
+"""Letters that are kept of what is no JSON."""
