@@ -173,8 +173,8 @@ def floor_plan(
             if turn.agent and scene.is_within_walls(turn.agent.position, _AROUND_M)
         ),
         labels={
-            "small": placed([_scaled(wish, view.scale) for wish in small], ground),
-            "large": placed([_scaled(wish, view.scale) for wish in large], ground),
+            "small": _placed(small, ground, view.scale),
+            "large": _placed(large, ground, view.scale),
         },
     )
 
@@ -201,8 +201,8 @@ def _ground(view: View, way: Sequence[_Plan], objects: Sequence[Outline]) -> Gro
     return Ground(view.x + edge, view.y + edge, right, bottom, busy)
 
 
-def _scaled(wish: Wish, scale: float) -> Wish:
-    return replace(wish, size=round(wish.size * scale, 4), away=wish.away * (0.4 + 0.6 * scale))
+def _placed(wishes: Sequence[Wish], ground: Ground, scale: float) -> tuple[Label, ...]:
+    return placed([replace(wish, size=round(wish.size * scale, 4)) for wish in wishes], ground)
 
 
 def _small_labels(
