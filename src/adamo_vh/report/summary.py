@@ -120,8 +120,7 @@ class Account:
         """Count."""
         thoughts, acts = trajectory.thoughts, trajectory.acts
         replies = [thought.reply for thought in thoughts]
-        kinds = (FAILURES.get(reply.ending) for reply in replies if reply.unreadable)
-        failures = Counter(kind or "unreadable" for kind in kinds)
+        failures = Counter(FAILURES[r.ending] for r in replies if r.ending.is_failure)
         if result is not None:
             return cls(
                 result.steps,
@@ -132,7 +131,7 @@ class Account:
                 _estimated(replies) or ("estimated" if result.usage.estimated else ""),
                 result.cost_usd,
                 result.rungs,
-                result.unreadable,
+                failures.total() or result.unreadable,
                 failures,
                 result.model_s,
                 result.world_s,
@@ -146,7 +145,7 @@ class Account:
             _estimated(replies),
             total_cost(thoughts),
             tuple(sorted({reply.rung.value for reply in replies if reply.rung})),
-            sum(bool(reply.unreadable) for reply in replies),
+            failures.total(),
             failures,
             sum(reply.seconds for reply in replies),
             sum(act.world_s for act in acts),
