@@ -59,8 +59,15 @@ class Vec3:
         """Each coordinate rounded; negative zero becomes zero."""
         return Vec3(*(round(v, digits) + 0.0 for v in (self.x, self.y, self.z)))
 
+    def text(self, digits: int = 2, between: str = ", ") -> str:
+        """The point in words: "(x, y, z)", with so many digits, and never "-0.00"."""
+        # Rounding first turns -0.001 into 0.00.
+        point = self.rounded(digits)
+        told = between.join(f"{value:.{digits}f}" for value in (point.x, point.y, point.z))
+        return f"({told})"
+
     def __str__(self) -> str:
-        return f"({self.x:.2f}, {self.y:.2f}, {self.z:.2f})"
+        return self.text()
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,6 +80,8 @@ class ObservedObject:
     """Tight around the visible pixels: left, top, right, bottom; right and bottom are exclusive."""
     pixels: int
     """How many pixels show the object."""
+    short: str = ""
+    """The shortest name that its labeling understands; the tag itself if empty."""
 
 
 @dataclass(frozen=True, slots=True)

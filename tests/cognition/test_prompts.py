@@ -25,20 +25,10 @@ def test_the_system_prompt_is_as_agreed(labeling: Labeling) -> None:
     assert rendered + "\n" == golden.read_text(encoding="utf-8")
 
 
-def test_the_symbolic_state_is_as_agreed() -> None:
-    rendered = render(
-        "symbolic_state",
-        objects="- Plate_57: center (0.326, -0.603, 0.795), volume 1875.0 cm3",
-        points="none",
-        agent="- position (-2.00, -1.00, 0.00)",
-    )
-    assert rendered + "\n" == (GOLDEN / "symbolic_state.md").read_text(encoding="utf-8")
-
-
 def test_a_missing_variable_is_an_error() -> None:
-    with pytest.raises(ConfigError, match=r"symbolic_state\.md: 'points' is undefined"):
-        render("symbolic_state", objects="none", agent="none")
+    with pytest.raises(ConfigError, match=r"not_executed\.md: 'why' is undefined"):
+        render("not_executed")
 
 
 def test_braces_in_values_are_not_rendered_again() -> None:
-    assert "{{ agent }}" in render("symbolic_state", objects="{{ agent }}", points="", agent="")
+    assert "{{ why }}" in render("not_executed", why="{{ why }}")

@@ -11,7 +11,7 @@ from adamo_vh.benchmark.conditions import Condition
 from adamo_vh.benchmark.oracle import Oracle
 from adamo_vh.benchmark.tasks import TASKS, Task
 from adamo_vh.engine import World
-from adamo_vh.perception import Labeling, PerceptionConfig
+from adamo_vh.perception import Labeling, PerceptionConfig, Tagger
 
 MAX_STEPS = 60
 _RESOLUTION = (960, 540)
@@ -56,7 +56,7 @@ def verify_tasks(
         )
 
 
-def play_oracle(engine: World, labeling: Labeling, task: Task, goals: Sequence[Condition]) -> Score:
+def play_oracle(engine: World, labeling: Tagger, task: Task, goals: Sequence[Condition]) -> Score:
     """Let the oracle play towards goals through the same four tools, and score the task.
 
     Args:

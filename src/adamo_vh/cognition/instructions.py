@@ -8,19 +8,12 @@ from adamo_vh.action import tool_schema
 from adamo_vh.cognition.profile import PAPER, SWITCHES, Profile
 from adamo_vh.cognition.prompts import render
 from adamo_vh.engine import SceneInfo
-from adamo_vh.perception import Labeling
-
-_LABELING = {
-    Labeling.SEM: "- A tag says what an object is and its number: Class_number. "
-    "The number alone names the same object.",
-    Labeling.OPAQ: "- A tag is a number that says nothing about the object: "
-    "tell objects apart by how they look in the frame.",
-}
+from adamo_vh.perception import Tagger
 
 
 def system_prompt(
     scene: SceneInfo,
-    labeling: Labeling,
+    labeling: Tagger,
     actions: Iterable[type],
     near_m: float,
     profile: Profile = PAPER,
@@ -45,7 +38,7 @@ def system_prompt(
         y_max=f"{scene.y_max:g}",
         corner_m=f"{corners[0].x_max - corners[0].x_min:g}" if corners else "",
         near_m=f"{near_m:g}",
-        labeling=_LABELING[labeling],
+        labeling=f"- {labeling.described}",
         **switches,
         tools=", ".join(f"{s.name}({', '.join(s.parameters['properties'])})" for s in schemas),
     )

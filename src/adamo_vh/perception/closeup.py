@@ -80,14 +80,12 @@ def aim(eyes: Vec3, points: Array, longer_px: int, slimmest: float = SLIMMEST) -
     middle = Vec3.of(points.mean(axis=0))
     half = np.zeros(2)
     for _ in range(3):  # Turning the camera to the middle moves the middle a little.
-        line = middle - eyes
-        pitch = math.atan2(line.z, math.hypot(line.x, line.y))
         # Two pixels high at a right angle: its pixels are tangents, with (1, 1) in the middle.
-        camera = Camera(eyes, math.atan2(line.y, line.x), pitch, math.pi / 2, 2, 2)
+        camera = Camera.towards(eyes, middle, math.pi / 2, (2, 2))
         pixels = camera.project(points)[:, :2]
         low, high = pixels.min(axis=0), pixels.max(axis=0)
         half = (high - low) / 2
-        middle = eyes + Vec3.of(camera.rays(((low + high) / 2)[None])[0]) * line.norm()
+        middle = eyes + Vec3.of(camera.rays(((low + high) / 2)[None])[0]) * middle.distance(eyes)
     half = np.maximum(half * _MARGIN, _LEAST_TAN)
     half = np.maximum(half, half.max() * slimmest)
     width, height = (round(float(side)) for side in half / half.max() * longer_px)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from adamo_vh.errors import ConfigError, EngineError
 from adamo_vh.observation import AgentState, BodyState, Observation, ObservedObject, Percept
 from adamo_vh.perception.clutter import Clutter
-from adamo_vh.perception.labeling import Labeling
+from adamo_vh.perception.labeling import Labeling, Tagger
 from adamo_vh.perception.overlay import BEST_QUALITY, ImageFormat, draw_overlay
 from adamo_vh.perception.reference_points import Raycast, reference_points
 from adamo_vh.perception.visibility import VisibleObject, visible_objects
@@ -19,8 +19,8 @@ from adamo_vh.perception.visibility import VisibleObject, visible_objects
 class PerceptionConfig:
     """How a view is turned into an observation; the defaults are the paper's baseline."""
 
-    labeling: Labeling = Labeling.SEM
-    """How objects are called."""
+    labeling: Tagger = Labeling.SEM
+    """How objects are called: one of the two that are shipped, or an own one."""
     grid: int = 6
     """Reference points along each side of the picture; 0 shows none."""
     points_below_m: float = math.inf
@@ -70,7 +70,7 @@ def perceive(
     return Observation(frame, objects, points, agent, percept.camera)
 
 
-def agent_state(body: BodyState, labeling: Labeling, names: Mapping[int, str]) -> AgentState:
+def agent_state(body: BodyState, labeling: Tagger, names: Mapping[int, str]) -> AgentState:
     """The body as the agent is told about it.
 
     Args:
@@ -82,7 +82,7 @@ def agent_state(body: BodyState, labeling: Labeling, names: Mapping[int, str]) -
     return AgentState(body.position, body.heading_rad, body.gaze, body.eyes, held)
 
 
-def _observed(item: VisibleObject, percept: Percept, labeling: Labeling) -> ObservedObject:
+def _observed(item: VisibleObject, percept: Percept, labeling: Tagger) -> ObservedObject:
     seen = percept.objects.get(item.id)
     if seen is None:
         raise EngineError(
@@ -95,4 +95,5 @@ def _observed(item: VisibleObject, percept: Percept, labeling: Labeling) -> Obse
         volume_m3=seen.box.volume_m3,
         box_px=item.box_px,
         pixels=item.pixels,
+        short=labeling.short(item.id, seen.class_name),
     )

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable
 from enum import StrEnum
 
-from adamo_vh.geometry import Vec3
 from adamo_vh.observation import AgentState, ObservedObject, ReferencePoint
 
 NONE = "none"
@@ -31,18 +30,18 @@ def object_lines(objects: Iterable[ObservedObject], form: TextForm) -> str:
 
 def point_lines(points: Iterable[ReferencePoint]) -> str:
     """One line for each reference point, in the order given."""
-    return "\n".join(f"- {point.tag}: {_place(point.position, 2)}" for point in points) or NONE
+    return "\n".join(f"- {point.tag}: {point.position.text()}" for point in points) or NONE
 
 
 def agent_lines(agent: AgentState, form: TextForm) -> str:
     """The agent's own state."""
-    lines = [f"- position {_place(agent.position, 2)}"]
+    lines = [f"- position {agent.position.text()}"]
     if form is TextForm.FULL:
         # Rounding first keeps 359.7 from being written as 360.
         heading_deg = round(math.degrees(agent.heading_rad)) % 360
         lines += [
             f"- heading {heading_deg} deg",
-            f"- gaze {_place(agent.gaze, 2)}",
+            f"- gaze {agent.gaze.text()}",
             f"- hand: {agent.held or 'empty'}",
         ]
     return "\n".join(lines)
@@ -50,13 +49,7 @@ def agent_lines(agent: AgentState, form: TextForm) -> str:
 
 def _object_line(item: ObservedObject, form: TextForm) -> str:
     volume_cm3 = item.volume_m3 * _CM3_PER_M3
-    line = f"- {item.tag}: center {_place(item.position, 3)}, volume {volume_cm3:.1f} cm3"
+    line = f"- {item.tag}: center {item.position.text(3)}, volume {volume_cm3:.1f} cm3"
     if form is TextForm.FULL:
         line += f", box [{', '.join(map(str, item.box_px))}] px"
     return line
-
-
-def _place(point: Vec3, digits: int) -> str:
-    # Rounding first turns -0.001 into 0.00, never -0.00.
-    p = point.rounded(digits)
-    return f"({p.x:.{digits}f}, {p.y:.{digits}f}, {p.z:.{digits}f})"

@@ -15,7 +15,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from adamo_vh.action import Outcome
-from adamo_vh.cognition.memory.writer import Told, Wording, view_now, whole_state
 from adamo_vh.cognition.profile import PAPER, Profile, StateText
 from adamo_vh.cognition.prompts import render
 from adamo_vh.errors import ConfigError
@@ -31,6 +30,7 @@ from adamo_vh.inference.messages import (
 )
 from adamo_vh.observation import AgentState, Frame, Observation
 from adamo_vh.perception import TextForm
+from adamo_vh.perception.writer import Told, Wording, view_now, whole_state
 
 
 @dataclass(frozen=True, slots=True)

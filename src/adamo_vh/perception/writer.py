@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from adamo_vh.cognition.prompts import render
-from adamo_vh.geometry import Vec3
 from adamo_vh.observation import AgentState, Observation, ObservedObject, ReferencePoint
-from adamo_vh.perception import TextForm, agent_lines, object_lines, point_lines
-from adamo_vh.perception.symbolic import NONE
+from adamo_vh.perception.symbolic import NONE, TextForm, agent_lines, object_lines, point_lines
+from adamo_vh.render import render_from
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +27,12 @@ class Wording:
         """Where an object is: true also when it is out of view."""
         if not self.terse:
             return object_lines([item], TextForm.PAPER)
-        return f"- {item.tag} {_short(item.position)}, {item.volume_m3 * 1e6:.0f} cm3"
+        return f"- {item.tag} {item.position.text(2, ',')}, {item.volume_m3 * 1e6:.0f} cm3"
 
     def in_view(self, item: ObservedObject) -> str:
         """An object as it is seen now."""
         if self.terse:
-            return item.tag.rpartition("_")[2]
+            return item.short or item.tag
         if self.form is TextForm.PAPER:
             return item.tag
         return f"{item.tag} [{', '.join(map(str, item.box_px))}]"
@@ -43,7 +41,7 @@ class Wording:
         """One line for each reference point; all on one line where words are few."""
         if not self.terse:
             return point_lines(points)
-        return ", ".join(f"{point.tag} {_short(point.position)}" for point in points) or NONE
+        return ", ".join(f"{point.tag} {point.position.text(2, ',')}" for point in points) or NONE
 
     def agent(self, agent: AgentState) -> str:
         """The body now."""
@@ -52,7 +50,8 @@ class Wording:
 
 def whole_state(view: Observation, agent: AgentState, wording: Wording) -> str:
     """All of it: objects and points of a view, and the body now."""
-    return render(
+    return render_from(
+        "adamo_vh.perception.prompts",
         "symbolic_state",
         objects=wording.objects(view.objects),
         points=wording.points(view.points),
@@ -94,11 +93,6 @@ def view_now(view: Observation, wording: Wording) -> str:
     if not wording.terse:
         points = ", ".join(item.replace(":", "", 1) for item in _items(points)) or NONE
     return f"# The view now\nIn view: {tags}\nReference points: {points}"
-
-
-def _short(point: Vec3) -> str:
-    p = point.rounded(2)
-    return f"({p.x:.2f},{p.y:.2f},{p.z:.2f})"
 
 
 def _items(lines: str) -> list[str]:

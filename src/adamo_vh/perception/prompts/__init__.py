@@ -1,0 +1,1 @@
+"""The form of the text mirror, as a text file."""
