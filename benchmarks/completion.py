@@ -17,11 +17,11 @@ from typing import Any
 
 import adamo_vh
 from adamo_vh.benchmark.tasks import TASKS
-from adamo_vh.cli.episode import parse_resolution
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.episode.config import read_resolution
 from adamo_vh.inference.cost.tokens import metered
-from adamo_vh.session.players import create_player, fitting
+from adamo_vh.session.minds import fitting, model_of
 
 
 def main() -> None:
@@ -33,7 +33,7 @@ def main() -> None:
     parser.add_argument("--profile", action="append")
     parser.add_argument("--task", action="append")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--resolution", type=parse_resolution, default=(1920, 1080))
+    parser.add_argument("--resolution", type=read_resolution, default=(1920, 1080))
     parser.add_argument("--budget-usd", type=float, help="cap on the whole run")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
@@ -48,7 +48,7 @@ def main() -> None:
         )
         for profile, labeling, task in cells:
             # What may be asked of a model depends on the profile.
-            player = create_player(arguments.model, profile=PROFILES[profile])
+            player = model_of(arguments.model, profile=PROFILES[profile])
             chosen = fitting(PROFILES[profile], player)
             result = adamo_vh.run_episode(
                 task=task,

@@ -24,7 +24,7 @@ from adamo_vh.action import ToolSchema
 from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.inference.messages import HumanMessage, ImagePart, Message, ToolMessage
 from adamo_vh.inference.model import Model, ModelInfo, Reply, Sampling
-from adamo_vh.session.players import create_player
+from adamo_vh.session.minds import model_of
 
 Asked = tuple[tuple[Message, ...], tuple[ToolSchema, ...], Sampling]
 
@@ -66,7 +66,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
-    player = create_player(arguments.model)
+    player = model_of(arguments.model)
     cells: dict[tuple[str, str, str], Times] = {}
     marks = itertools.count(1)
     for scene in arguments.scene or ["s1", "s2"]:

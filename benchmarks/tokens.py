@@ -28,7 +28,6 @@ from adamo_vh.action_server import LocalActionServer
 from adamo_vh.benchmark.oracle import Oracle
 from adamo_vh.benchmark.tasks import TASKS, Task
 from adamo_vh.cognition.profile import PROFILES, Profile, profile
-from adamo_vh.cognition.turns import FINISH
 from adamo_vh.engine import World
 from adamo_vh.inference.cost.tokens import (
     ANTHROPIC,
@@ -43,7 +42,7 @@ from adamo_vh.inference.cost.tokens import (
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall, ToolMessage
 from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling, Usage
 from adamo_vh.perception import PerceptionConfig
-from adamo_vh.record.turn import CONFIDENCE, NOTE
+from adamo_vh.record.turn import CONFIDENCE, FINISH, NOTE
 
 PAPER_TOKENS, PAPER_CALLS = 32_978, 4.67
 RULES: dict[str, ImageRule] = {

@@ -14,11 +14,13 @@ from tests.tabletop import carried_out, tabletop
 
 from adamo_vh.action import Code, Drop, Feedback, Look, Outcome, Pick, Walk
 from adamo_vh.benchmark.tasks import task
+from adamo_vh.cognition.turns import read_turn
 from adamo_vh.engine import WorldState
-from adamo_vh.episode.result import EpisodeConfig, Manifest, summarise, write_record
+from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.episode.result import Manifest, summarise, write_record
 from adamo_vh.geometry import Camera, Vec3
-from adamo_vh.inference.messages import ToolCall
-from adamo_vh.inference.model import ModelKind, Usage
+from adamo_vh.inference.messages import AIMessage, ToolCall
+from adamo_vh.inference.model import ModelKind, Reply, Usage
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
 from adamo_vh.record.run_folder import MANIFEST, RESULT
 from adamo_vh.record.termination import TerminationReason
@@ -52,6 +54,7 @@ class Recorder:
     size: tuple[int, int] = (64, 36)
     world: WorldState = field(default_factory=tabletop)
     step: int = 0
+    calls: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.manifest = Manifest(
@@ -106,7 +109,9 @@ class Recorder:
     def think(self, note: str, *calls: ToolCall) -> None:
         state = "# Symbolic state\n\n## You\n- hand: empty"
         usage = Usage(6200 + 300 * self.step, 120, 4000)
-        self.writer.notify(Thought(self.step, state, 3, note, calls, usage, 4.2, 0.0))
+        reply = Reply(AIMessage(note, calls), usage, 4.2)
+        self.writer.notify(Thought(self.step, state, 3, read_turn(reply, self.config.profile)))
+        self.calls = [call.id for call in calls]
 
     def act(
         self,
@@ -126,11 +131,15 @@ class Recorder:
         self.step += 1
         digest = self.world.hash()
         self.writer.notify(
-            Acted(self.step, name, arguments, feedback, self.agent, digest, "{}", 0.31)
+            Acted(self.step, self.call(), name, arguments, feedback, self.agent, digest, "{}", 0.31)
         )
 
     def left_out(self, name: str, why: str) -> None:
-        self.writer.notify(LeftOut(self.step, name, why))
+        self.writer.notify(LeftOut(self.step, self.call(), name, why))
+
+    def call(self) -> str:
+        """The next call of the turn."""
+        return self.calls.pop(0) if self.calls else ""
 
     def end(self, answer: str, reason: TerminationReason = TerminationReason.ANSWERED) -> None:
         if reason is TerminationReason.ANSWERED:

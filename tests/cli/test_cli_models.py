@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from adamo_vh.cli.app import app
 from adamo_vh.errors import ModelConfigError
-from adamo_vh.session.episode import run_episode
+from adamo_vh.session.runs import run_episode
 
 
 @pytest.fixture(autouse=True)

@@ -10,9 +10,11 @@ from rich.console import Console
 
 from adamo_vh.action import Code, Feedback, Outcome
 from adamo_vh.cli.progress import Progress
+from adamo_vh.cognition.profile import PROFILES
+from adamo_vh.cognition.turns import read_turn
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.messages import ToolCall
-from adamo_vh.inference.model import Usage
+from adamo_vh.inference.messages import AIMessage, ToolCall
+from adamo_vh.inference.model import Reply
 from adamo_vh.observation import AgentState
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import (
@@ -32,7 +34,8 @@ SAID = {"asked": "The key.", "verified": "I hold it.", "unseen": "The shelf.", "
 
 
 def thought(step: int, note: str, *calls: ToolCall, unreadable: str = "") -> Thought:
-    return Thought(step, "state", 3, note, calls, Usage(), 1.0, 0.0, unreadable=unreadable)
+    reply = Reply(AIMessage(note, calls), seconds=1.0, unreadable=unreadable)
+    return Thought(step, "state", 3, read_turn(reply, PROFILES["lean"]))
 
 
 def call(name: str, arguments: Mapping[str, Any] | None, raw: str = "") -> ToolCall:
@@ -43,7 +46,7 @@ def acted(
     step: int, name: str, arguments: Mapping[str, Any], outcome: Outcome = Outcome.DONE
 ) -> Acted:
     feedback = Feedback(outcome, Code.OK, f"{outcome.value.title()}: {name}.")
-    return Acted(step, name, arguments, feedback, AGENT, "h", "{}", 0.1)
+    return Acted(step, name, name, arguments, feedback, AGENT, "h", "{}", 0.1)
 
 
 def ended(reason: TerminationReason = TerminationReason.ANSWERED) -> Ended:
@@ -92,7 +95,7 @@ def test_a_plan_says_its_note_once_and_what_was_left_out() -> None:
         thought(0, "", *looks),
         acted(1, "Look", {"x": 0}),
         acted(2, "Look", {"x": 1}, Outcome.CORRECTED),
-        LeftOut(2, "Look", "a surprise"),
+        LeftOut(2, "Look", "Look", "a surprise"),
         ended(TerminationReason.LOOP),
     )
     assert told == [

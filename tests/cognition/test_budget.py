@@ -21,6 +21,7 @@ from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Rung, Sampling
 from adamo_vh.observation import AgentState
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Acted, Started, Thought, Trajectory
+from adamo_vh.record.turn import Turn
 from adamo_vh.runtime.builtin import BuiltinEngine
 
 AMOUNTS = st.integers(0, 10**6)
@@ -35,7 +36,18 @@ def thought(
     estimated: bool = False,
 ) -> Thought:
     usage = Usage(tokens, 0, estimated=estimated)
-    return Thought(0, "", 1, "", (), usage, seconds, 9.0, cost_usd=usd, rung=rung)
+    reply = Reply(AIMessage(""), usage, seconds, 9.0, cost_usd=usd, rung=rung)
+    return Thought(0, "", 1, Turn(reply))
+
+
+def reason(guard: BudgetGuard) -> TerminationReason | None:
+    stop = guard.stop()
+    return stop.reason if stop else None
+
+
+def why(guard: BudgetGuard) -> str:
+    stop = guard.stop()
+    return stop.why if stop else ""
 
 
 @given(st.lists(st.tuples(AMOUNTS, AMOUNTS, st.floats(0, 10), st.integers(0, 3)), max_size=20))
@@ -51,16 +63,6 @@ def test_a_ledger_is_the_sum_of_what_was_spent(
     assert spent.calls == sum(calls for _, _, _, calls in entries)
     assert spent.seconds == pytest.approx(spent.usd)
     assert spent.unpriced == 0
-
-
-@given(AMOUNTS, AMOUNTS)
-def test_what_remains_and_what_is_spent_make_the_budget(cap: int, tokens: int) -> None:
-    ledger = Ledger()
-    ledger.spend(Usage(tokens), 0.5)
-    left = ledger.remaining(Budget(tokens=cap, usd=2.0, calls=3))
-    assert left.tokens == max(0, cap - tokens)
-    assert (left.usd, left.calls, left.seconds) == (1.5, 2, None)
-    assert (ledger.exceeded(Budget(tokens=cap)) is None) == (tokens < cap)
 
 
 def test_several_threads_may_share_a_ledger() -> None:
@@ -102,7 +104,7 @@ def test_a_cap_that_is_reached_is_said_in_words(budget: Budget, words: str) -> N
 def test_a_budget_of_nothing_allows_no_call() -> None:
     for budget in (Budget(tokens=0), Budget(usd=0), Budget(calls=0), Budget(seconds=0)):
         assert budget
-        assert BudgetGuard(budget).verdict() is TerminationReason.BUDGET
+        assert reason(BudgetGuard(budget)) is TerminationReason.BUDGET
     assert not Budget()
 
 
@@ -114,20 +116,20 @@ def test_a_budget_that_is_no_amount_is_refused(amount: float) -> None:
 
 def test_an_unknown_price_ends_an_episode_that_has_a_budget_of_money() -> None:
     guard = BudgetGuard(Budget(usd=100.0))
-    assert guard.verdict() is None
+    assert guard.stop() is None
     guard.notify(thought(10, usd=None))
-    assert guard.verdict() is TerminationReason.BUDGET
-    assert "price of 1 of 1 calls is not known" in guard.why
-    assert "prices.toml" in guard.why
+    assert reason(guard) is TerminationReason.BUDGET
+    assert "price of 1 of 1 calls is not known" in why(guard)
+    assert "prices.toml" in why(guard)
     unpriced = BudgetGuard(Budget(tokens=100))
     unpriced.notify(thought(10, usd=None))
-    assert unpriced.verdict() is None
+    assert unpriced.stop() is None
 
 
 def test_a_remote_reply_without_usage_or_price_is_not_free() -> None:
     guard = BudgetGuard(Budget(usd=100.0))
     guard.notify(thought(0, usd=None, rung=Rung.NATIVE))
-    assert guard.verdict() is TerminationReason.BUDGET
+    assert reason(guard) is TerminationReason.BUDGET
 
 
 @pytest.mark.parametrize("estimated", [False, True])
@@ -135,27 +137,27 @@ def test_players_without_a_provider_cost_nothing(estimated: bool) -> None:
     guard = BudgetGuard(Budget(usd=0.01))
     tokens = 5000 if estimated else 0
     guard.notify(thought(tokens, usd=None, rung=None, estimated=estimated))
-    assert guard.verdict() is None
+    assert guard.stop() is None
     assert guard.spent.usd == 0
 
 
 def test_a_call_that_would_surely_not_fit_is_not_made() -> None:
     guard = BudgetGuard(Budget(tokens=1000))
     guard.notify(thought(450, usd=0.0))
-    assert guard.verdict() is None
+    assert guard.stop() is None
     guard.notify(thought(451, usd=0.0))
-    assert guard.verdict() is TerminationReason.BUDGET
-    assert "901 of 1,000 tokens are used, and the next call reads about 451" in guard.why
+    assert reason(guard) is TerminationReason.BUDGET
+    assert "901 of 1,000 tokens are used, and the next call reads about 451" in why(guard)
 
 
 def test_thinking_and_acting_take_time_and_waiting_does_not() -> None:
     guard = BudgetGuard(Budget(seconds=3.0))
     guard.notify(thought(1, usd=0.0, seconds=2.0))
-    assert guard.verdict() is None
+    assert guard.stop() is None
     state = AgentState(Vec3(0, 0, 0), 0.0, Vec3(1, 0, 1), Vec3(0, 0, 1.6))
     feedback = Feedback(Outcome.DONE, Code.OK, "Done.")
-    guard.notify(Acted(1, "Look", {}, feedback, state, "hash", "", 1.5))
-    assert guard.verdict() is TerminationReason.BUDGET
+    guard.notify(Acted(1, "c1", "Look", {}, feedback, state, "hash", "", 1.5))
+    assert reason(guard) is TerminationReason.BUDGET
     assert guard.spent.seconds == 3.5
 
 
@@ -164,24 +166,23 @@ def test_a_run_is_stopped_for_all_its_episodes_and_an_episode_for_itself() -> No
     first = BudgetGuard(Budget(tokens=600), ledger, run)
     first.notify(thought(300, usd=0.0))
     first.notify(thought(301, usd=0.0))
-    assert first.verdict() is TerminationReason.BUDGET
+    assert reason(first) is TerminationReason.BUDGET
     second = BudgetGuard(Budget(tokens=600), ledger, run)
-    assert second.verdict() is None
+    assert second.stop() is None
     second.notify(thought(400, usd=0.0))
-    assert second.verdict() is TerminationReason.BUDGET
+    assert reason(second) is TerminationReason.BUDGET
     third = BudgetGuard(Budget(tokens=600), ledger, run)
-    assert third.verdict() is TerminationReason.RUN_BUDGET
-    assert "whole run" in third.why
+    assert reason(third) is TerminationReason.RUN_BUDGET
+    assert "whole run" in why(third)
     assert ledger.spent.tokens == 1001
 
 
 def test_every_instruction_has_its_own_budget() -> None:
     guard = BudgetGuard(Budget(calls=1))
     guard.notify(thought(5, usd=0.0))
-    assert guard.verdict() is TerminationReason.BUDGET
+    assert reason(guard) is TerminationReason.BUDGET
     guard.notify(Started("And now?", "", "", ""))
-    assert guard.verdict() is None
-    assert guard.why == ""
+    assert guard.stop() is None
 
 
 class Spending:
@@ -223,7 +224,7 @@ def test_an_episode_stops_within_one_call_of_its_cap(
     assert ended.reason.is_scored
     assert model.asked == asked
     assert guard.spent.calls == asked
-    assert guard.why
+    assert ended.why
 
 
 def test_a_forecast_adds_up_a_growing_prompt() -> None:

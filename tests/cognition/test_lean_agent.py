@@ -128,7 +128,7 @@ def test_a_plan_has_a_length_and_so_has_the_episode(engine: BuiltinEngine) -> No
 
 def test_nothing_new_is_shown_when_nothing_has_changed(engine: BuiltinEngine) -> None:
     _, trajectory, player = play(engine, [says(NOWHERE), finish()])
-    assert len(trajectory.views) == 1
+    assert len([e for e in trajectory.events if isinstance(e, Observed)]) == 1
     assert player.results(1)[0].text.startswith("Refused")
     assert "The view now" not in player.results(1)[0].text
 
@@ -196,7 +196,7 @@ def test_unreadable_replies_are_told_counted_and_end_at_last(engine: BuiltinEngi
     odd = Reply(AIMessage("blah"), unreadable="could not be read: there is no Action.")
     ended, trajectory, player = play(engine, [odd, odd, says(PICK), odd, odd, odd])
     assert ended.reason is TerminationReason.PROTOCOL
-    assert sum(bool(thought.unreadable) for thought in trajectory.thoughts) == 5
+    assert sum(bool(thought.reply.unreadable) for thought in trajectory.thoughts) == 5
     last = player.prompts[1][-1]
     assert isinstance(last, HumanMessage)
     assert "could not be read: there is no Action." in last.text
@@ -282,7 +282,7 @@ def test_a_view_that_a_call_brought_is_not_taken_again(engine: BuiltinEngine) ->
     look = noted("Look", x=0.0, y=-1.0, z=0.8)
     see = noted("Inspect", object="Plate_57")
     _, trajectory, _ = play(engine, [says(look, see, NOWHERE), finish()])
-    assert len(trajectory.views) == 2
+    assert len([e for e in trajectory.events if isinstance(e, Observed)]) == 2
 
 
 def test_what_is_asked_back_says_how_to_go_on(engine: BuiltinEngine) -> None:

@@ -14,16 +14,16 @@ from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS
 from adamo_vh.benchmark.conditions import NEAR_M
 from adamo_vh.cognition.instructions import system_prompt
 from adamo_vh.cognition.profile import PAPER, PROFILES, SWITCHES, Profile, StateText, profile
-from adamo_vh.cognition.turns import FINISH, offered, read_turn
+from adamo_vh.cognition.turns import offered, read_turn
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.messages import AIMessage, ToolCall
 from adamo_vh.inference.model import Reply
 from adamo_vh.inference.players.scripted import ScriptedModel
 from adamo_vh.perception import Labeling
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.turn import reasoning
+from adamo_vh.record.turn import FINISH
 from adamo_vh.runtime.scenes import load_scene
-from adamo_vh.session.players import fitting
+from adamo_vh.session.minds import fitting
 
 LEAN = PROFILES["lean"]
 BODY = (Look, Walk, Pick, Drop)
@@ -123,7 +123,7 @@ def test_notes_are_taken_out_of_the_arguments() -> None:
     turn = read_turn(said, LEAN)
     (wish,) = turn.wishes
     assert (wish.arguments, wish.note, wish.confidence) == ({"object": "57"}, "I see it.", 0.9)
-    assert reasoning("", said.message.calls) == "I see it."
+    assert read_turn(said, LEAN).note == "I see it."
     assert read_turn(said, PAPER).wishes[0].arguments == said.message.calls[0].arguments
 
 
@@ -139,10 +139,10 @@ def test_what_ends_an_episode() -> None:
     finish = {"note": "n", "asked": "a", "verified": "v", "unseen": "", "answer": "It is done."}
     turn = read_turn(reply((FINISH, finish)), LEAN)
     assert turn.ends
-    assert (turn.answer, turn.reason) == ("It is done.", TerminationReason.ANSWERED)
+    assert (turn.answer, turn.stop.reason) == ("It is done.", TerminationReason.ANSWERED)
     assert read_turn(reply(text="Done."), PAPER).ends
     assert not read_turn(reply(("Look", {}), (FINISH, finish)), LEAN).ends
-    assert read_turn(reply(), PAPER).reason is TerminationReason.EMPTY_REPLY
+    assert read_turn(reply(), PAPER).stop.reason is TerminationReason.EMPTY_REPLY
     assert not read_turn(replace(reply(text="Hm"), unreadable="no action"), PAPER).ends
 
 

@@ -86,7 +86,7 @@ def test_a_passing_fault_is_tried_again_and_changes_nothing(
     assert [one.text.startswith("fault: ") for one in seen] == [False, True, False, False]
     assert seen[1].status == settings.get("status", seen[1].status)
     if "retry_after_s" in settings:
-        assert trajectory.thoughts[1].waited_s >= 1
+        assert trajectory.thoughts[1].reply.waited_s >= 1
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_a_wrong_call_becomes_feedback_and_the_episode_goes_on(
 
 def test_of_two_calls_one_is_executed(engine: BuiltinEngine, undisturbed: EpisodeResult) -> None:
     result, trajectory, _ = play(engine, faults(What.TWO_CALLS))
-    assert [len(t.calls) for t in trajectory.thoughts] == [1, 2, 0]
+    assert [len(t.turn.wishes) for t in trajectory.thoughts] == [1, 2, 0]
     assert result.state_hash == undisturbed.state_hash
 
 
@@ -150,7 +150,7 @@ def test_a_slow_answer_is_the_same_answer(
 ) -> None:
     result, trajectory, _ = play(engine, faults(What.SLOW, seconds=0.2))
     assert result.state_hash == undisturbed.state_hash
-    assert trajectory.thoughts[1].model_s >= 0.2
+    assert trajectory.thoughts[1].reply.seconds >= 0.2
 
 
 def test_a_refused_parameter_is_left_out(engine: BuiltinEngine, undisturbed: EpisodeResult) -> None:

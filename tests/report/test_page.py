@@ -82,7 +82,7 @@ def full(tmp_path: Path) -> Page:
 def test_the_page_tells_the_whole_episode(full: Page, tmp_path: Path) -> None:
     trajectory = read_trajectory(tmp_path)
     for thought in trajectory.thoughts:
-        assert thought.note in full.text
+        assert thought.turn.note in full.text
         assert thought.state_text in full.text
     for act in trajectory.acts:
         assert act.feedback.text in full.text

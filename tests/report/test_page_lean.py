@@ -16,8 +16,9 @@ from tests.tabletop import carried_out
 from adamo_vh.action import Code, Feedback, Look, Outcome
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.profile import PROFILES
-from adamo_vh.inference.messages import ToolCall
-from adamo_vh.inference.model import Rung, Usage
+from adamo_vh.cognition.turns import read_turn
+from adamo_vh.inference.messages import AIMessage, ToolCall
+from adamo_vh.inference.model import Reply, Rung, Usage
 from adamo_vh.observation import Frame
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Ended, Started, Thought, read_trajectory, shown
@@ -45,8 +46,10 @@ def finish(answer: str, confidence: float = 0.9) -> ToolCall:
 
 def say(run: Recorder, **fields: Any) -> None:
     """The model answers in a way that `Recorder.think` does not know."""
-    told = Thought(run.step, "state", 3, "", (), Usage(), 1.0, 0.0)
-    run.writer.notify(replace(told, **fields))
+    message = AIMessage(fields.pop("note", ""), fields.pop("calls", ()))
+    reply = Reply(message, seconds=1.0, **fields)
+    run.calls = [call.id for call in message.calls]
+    run.writer.notify(Thought(run.step, "state", 3, read_turn(reply, run.config.profile)))
 
 
 def show(run: Recorder, frame: Frame = CLOSEUP) -> None:
@@ -58,7 +61,7 @@ def finished(run: Recorder, reason: TerminationReason = TerminationReason.ANSWER
 
 
 def lean_turns(run: Recorder) -> tuple[Turn, ...]:
-    return turns(read_trajectory(run.folder), run.config.profile)
+    return turns(read_trajectory(run.folder))
 
 
 def test_a_plan_is_one_turn_with_every_call_and_its_feedback(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ INFO = BodyInfo("mara", 0.3, 1.6, 1.2, 0.7, 2.0, 0.5)
 
 def acted(step: int, name: str, held: str | None, said: Feedback) -> Acted:
     agent = AgentState(BODY.position, 0.0, BODY.gaze, BODY.eyes, held)
-    return Acted(step, name, {}, said, agent, "hash", "{}", 0.1)
+    return Acted(step, name, name, {}, said, agent, "hash", "{}", 0.1)
 
 
 def picked(step: int, tag: str) -> Acted:

@@ -9,9 +9,9 @@ from tests.fake_provider import FakeProvider, call, completion
 
 import adamo_vh
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
-from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.cognition.profile import PROFILES
-from adamo_vh.episode.result import EpisodeConfig, read_manifest, read_result
+from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.episode.result import read_manifest, read_result
 from adamo_vh.errors import CassetteError, ConfigError
 from adamo_vh.inference.cost.tokens import OPENAI_TILES, estimate_image, metered
 from adamo_vh.inference.registry import create_model
@@ -19,6 +19,7 @@ from adamo_vh.inference.remote.provider import ProviderModel
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.session.forecasting import forecast_episodes
+from adamo_vh.session.session import Session
 
 SMALL = (640, 360)
 PRICED = '["openai:tiny-vlm@*"]\ninput = 2.5\ncached = 1.25\noutput = 10.0\n'
@@ -94,23 +95,16 @@ def test_the_budget_of_a_run_is_shared_by_its_episodes(engine: BuiltinEngine) ->
 
 
 def test_a_forecast_comes_before_the_first_request(engine: BuiltinEngine, prices: Path) -> None:
-    heard: list[tuple[Forecast, int]] = []
+    config = EpisodeConfig.of(task="T4", resolution=SMALL)
     with FakeProvider([completion("I cannot.")]) as server:
-        adamo_vh.run_episode(
-            task="T4",
-            model=ProviderModel(server.uri()),
-            engine=engine,
-            resolution=SMALL,
-            announce=lambda ahead: heard.append((ahead, len(server.requests))),
-        )
-    ((ahead, sent),) = heard
-    assert sent == 0
+        model = ProviderModel(server.uri())
+        ahead = Session.begin(config, engine=engine, model=model).forecast()
+        assert len(server.requests) == 0
+    assert ahead is not None
     assert ahead.calls == 3
     assert ahead.usd is not None
-    adamo_vh.run_episode(
-        task="T1", engine=engine, resolution=SMALL, announce=lambda _: heard.append((ahead, 0))
-    )
-    assert len(heard) == 1  # the baseline costs nothing
+    # The baseline costs nothing.
+    assert Session.begin(config, engine=engine).forecast() is None
 
 
 def test_a_forecast_is_near_to_what_is_used(engine: BuiltinEngine) -> None:

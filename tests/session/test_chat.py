@@ -10,14 +10,13 @@ import pytest
 
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.profile import PROFILES
-from adamo_vh.episode.result import EpisodeConfig
+from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import RecordError
 from adamo_vh.record.run_folder import EVENTS
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Trajectory, read_trajectory
-from adamo_vh.session.chat import ChatSession
-from adamo_vh.session.episode import run_episode
-from adamo_vh.session.replaying import replay_episode
+from adamo_vh.session.runs import replay_episode, run_episode
+from adamo_vh.session.session import Session
 
 SMALL = (640, 360)
 
@@ -28,7 +27,7 @@ def config(instruction: str = "Pick the plate", profile: str = "paper") -> Episo
 
 @pytest.mark.parametrize("profile", ["paper", "lean"])
 def test_the_second_instruction_knows_the_first(tmp_path: Path, profile: str) -> None:
-    with ChatSession.begin(config(profile=profile), tmp_path) as session:
+    with Session.begin(config(profile=profile), tmp_path) as session:
         first = session.say("Pick the plate")
         second = session.say("Put the plate on the floor")
     assert [first.reason, second.reason] == [TerminationReason.ANSWERED] * 2
@@ -42,11 +41,11 @@ def test_the_second_instruction_knows_the_first(tmp_path: Path, profile: str) ->
 
 
 def test_a_conversation_is_gone_on_with_where_it_was_left(tmp_path: Path) -> None:
-    with ChatSession.begin(config(), tmp_path) as session:
+    with Session.begin(config(), tmp_path) as session:
         left = session.say("Pick the plate")
     heard = Trajectory()
     before = (tmp_path / EVENTS).read_bytes()
-    with ChatSession.resume(tmp_path, observers=[heard]) as session:
+    with Session.resume(tmp_path, observers=[heard]) as session:
         assert (tmp_path / EVENTS).read_bytes() == before
         assert heard.events == []
         ended = session.say("Put the plate on the floor")
@@ -56,11 +55,11 @@ def test_a_conversation_is_gone_on_with_where_it_was_left(tmp_path: Path) -> Non
 
 
 def test_an_interrupted_instruction_is_finished_on_the_way_back(tmp_path: Path) -> None:
-    with ChatSession.begin(config("Pick the plate and place it on the floor"), tmp_path) as session:
+    with Session.begin(config("Pick the plate and place it on the floor"), tmp_path) as session:
         whole = session.say("Pick the plate and place it on the floor")
     lines = (tmp_path / EVENTS).read_bytes().splitlines(keepends=True)
     (tmp_path / EVENTS).write_bytes(b"".join(lines[:5]))
-    with ChatSession.resume(tmp_path):
+    with Session.resume(tmp_path):
         pass
     ended = read_trajectory(tmp_path).ended
     assert ended is not None
@@ -69,14 +68,14 @@ def test_an_interrupted_instruction_is_finished_on_the_way_back(tmp_path: Path) 
 
 def test_any_episode_can_become_a_conversation(tmp_path: Path) -> None:
     run_episode(task="T2", resolution=SMALL, out=tmp_path)
-    with ChatSession.resume(tmp_path) as session:
+    with Session.resume(tmp_path) as session:
         ended = session.say("Put the plate on the floor")
     assert ended.reason is TerminationReason.ANSWERED
 
 
 def test_a_budget_holds_for_the_whole_conversation(tmp_path: Path) -> None:
     guard = BudgetGuard(Budget(), Ledger(), Budget(calls=3))
-    with ChatSession.begin(config(), tmp_path, guards=[guard]) as session:
+    with Session.begin(config(), tmp_path, guards=[guard]) as session:
         session.say("Pick the plate")
         ended = session.say("Put the plate on the floor")
     assert ended.reason is TerminationReason.RUN_BUDGET
@@ -85,13 +84,13 @@ def test_a_budget_holds_for_the_whole_conversation(tmp_path: Path) -> None:
 
 
 def test_no_conversation_is_begun_on_top_of_another(tmp_path: Path) -> None:
-    ChatSession.begin(config(), tmp_path).close()
-    with ChatSession.begin(config(), tmp_path / "other") as session:
+    Session.begin(config(), tmp_path).close()
+    with Session.begin(config(), tmp_path / "other") as session:
         session.say("Pick the plate")
     with pytest.raises(RecordError, match="already holds"):
-        ChatSession.begin(config(), tmp_path / "other")
+        Session.begin(config(), tmp_path / "other")
     with pytest.raises(RecordError):
-        ChatSession.resume(tmp_path / "nothing")
+        Session.resume(tmp_path / "nothing")
 
 
 def test_the_command_talks_through_a_pipe(tmp_path: Path) -> None:

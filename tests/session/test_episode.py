@@ -19,7 +19,7 @@ from adamo_vh.errors import ConfigError, RecordError
 from adamo_vh.inference.model import ModelKind
 from adamo_vh.record.run_folder import EVENTS, FRAMES
 from adamo_vh.record.termination import Limits, TerminationReason
-from adamo_vh.record.trajectory import read_trajectory
+from adamo_vh.record.trajectory import Observed, read_trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
 
 SMALL = (480, 270)
@@ -65,7 +65,7 @@ def test_a_scripted_episode_is_scored_and_recorded(
     manifest, trajectory = read_manifest(folder), read_trajectory(folder)
     assert manifest.config.task == "T4"
     assert set(manifest.versions) >= {"adamo-vh", "python", "mujoco"}
-    assert {view.frame for view in trajectory.views} == {
+    assert {e.frame for e in trajectory.events if isinstance(e, Observed)} == {
         path.name for path in (folder / FRAMES).iterdir()
     }
     page = (folder / "episode.html").read_text(encoding="utf-8")

@@ -60,7 +60,7 @@ def test_every_rung_reaches_the_same_completion(engine: BuiltinEngine, task: str
         assert result.termination is TerminationReason.ANSWERED
         assert result.answer == brain.answer
         assert [(act.name, act.arguments) for act in trajectory.acts] == steps
-        assert {thought.rung for thought in trajectory.thoughts[:-1]} == {rung}
+        assert {thought.reply.rung for thought in trajectory.thoughts[:-1]} == {rung}
         offered = ["tools" in request for request in brain.asked]
         assert set(offered) == {rung in (Rung.NATIVE, Rung.LEAKED)}
         assert all("response_format" in r for r in brain.asked) is (rung is Rung.SCHEMA)
@@ -121,7 +121,7 @@ def test_the_lean_profile_works_without_tool_calls(engine: BuiltinEngine, rung: 
         model.info.close()
     assert (result.completion, result.answer) == (1.0, "It is there.")
     assert result.missing_notes == 0
-    calls = [call for thought in trajectory.thoughts for call in thought.calls]
+    calls = [call for thought in trajectory.thoughts for call in thought.reply.message.calls]
     assert all((call.arguments or {})["note"] == f"Now I {call.name}." for call in calls)
     assert len(brain.asked) == len(steps) + 1
 
@@ -153,6 +153,6 @@ def test_garbage_is_counted_and_not_scored_as_an_answer(engine: BuiltinEngine) -
         )
         model.info.close()
     first, second, *_ = trajectory.thoughts
-    assert "Action:" in first.unreadable
-    assert first.requests == 2
-    assert second.unreadable == ""
+    assert "Action:" in first.reply.unreadable
+    assert first.reply.requests == 2
+    assert second.reply.unreadable == ""

@@ -14,14 +14,15 @@ from tests.cognition.test_lean_agent import Player, finish, noted, says
 import adamo_vh
 from adamo_vh.action import ToolSchema
 from adamo_vh.cognition.profile import PROFILES
-from adamo_vh.episode.result import EpisodeConfig, read_result
+from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.episode.result import read_result
 from adamo_vh.errors import ProviderError, RecordError
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
 from adamo_vh.inference.model import Reply, Sampling
 from adamo_vh.record.run_folder import EVENTS, RESULT
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import LeftOut, Trajectory, read_trajectory
-from adamo_vh.session.chat import ChatSession
+from adamo_vh.session.session import Session
 
 SMALL = (480, 270)
 PLACE: dict[str, Any] = {"x": -1.5, "y": -2.5, "z": 0.0}
@@ -140,14 +141,14 @@ def test_a_conversation_with_a_fault_in_it_is_gone_on_with(tmp_path: Path) -> No
     """The first instruction broke; on the way back its fault does not eat the next answer."""
     config = EpisodeConfig("Pick the plate", resolution=SMALL, profile=PROFILES["lean"])
     pick = says(noted("Pick", object="Plate_57"))
-    with ChatSession(config, tmp_path, Failing([pick, finish()], 0)) as session:
+    with Session.begin(config, tmp_path, model=Failing([pick, finish()], 0)) as session:
         first = session.say("Pick the plate")
         second = session.say("Pick the plate")
     assert first.reason is TerminationReason.BROKEN
     assert second.reason is TerminationReason.ANSWERED
     before = (tmp_path / EVENTS).read_bytes()
     heard = Trajectory()
-    with ChatSession.resume(tmp_path, observers=[heard]) as session:
+    with Session.resume(tmp_path, observers=[heard]) as session:
         assert heard.events == []
         assert session.say("Put the plate on the floor").reason is TerminationReason.ANSWERED
     assert (tmp_path / EVENTS).read_bytes().startswith(before)
@@ -159,7 +160,7 @@ def test_a_conversation_with_a_fault_in_it_is_gone_on_with(tmp_path: Path) -> No
 def test_an_answer_stays_in_the_memory_of_the_conversation(tmp_path: Path) -> None:
     config = EpisodeConfig("Take it", resolution=SMALL, profile=PROFILES["lean"])
     player = Player([finish(), Reply(AIMessage("Which one?")), Reply(AIMessage("Which one?"))])
-    with ChatSession(config, tmp_path, player) as session:
+    with Session.begin(config, tmp_path, model=player) as session:
         session.say("Take it")
         session.say("Take that")
         session.say("The plate")

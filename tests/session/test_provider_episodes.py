@@ -39,7 +39,7 @@ def test_t1_is_finished_on_every_wire(dialect: Dialect, engine: BuiltinEngine) -
     assert result.termination is TerminationReason.ANSWERED
     assert result.answer == "I hold object 34."
     assert result.tokens == 3 * (INPUT + OUTPUT)
-    assert [thought.requests for thought in trajectory.thoughts] == [2, 1, 1]
+    assert [thought.reply.requests for thought in trajectory.thoughts] == [2, 1, 1]
     last = [*dialect.read(server.requests[-1])]
     assert [p.id for p in last if p.kind == "call"] == ["c1", "c2"]
     assert [p.id for p in last if p.kind == "result"] == ["c1", "c2"]

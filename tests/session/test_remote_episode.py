@@ -13,7 +13,7 @@ from adamo_vh.inference.model import ModelKind
 from adamo_vh.inference.remote.provider import ProviderModel
 from adamo_vh.inference.remote.retry import RetryPolicy
 from adamo_vh.record.termination import Limits, TerminationReason
-from adamo_vh.record.trajectory import Trajectory
+from adamo_vh.record.trajectory import Observed, Trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
 
 QUICK = RetryPolicy(max_tries=2, max_wait_s=2.0, base_s=0.01, timeout_s=5.0)
@@ -48,7 +48,7 @@ def test_an_openai_compatible_server_finishes_t1(engine: BuiltinEngine) -> None:
     assert result.termination is TerminationReason.ANSWERED
     assert result.tokens == 3 * 1234
     assert result.answer == "I hold object 34."
-    assert len(trajectory.views) == 2
+    assert len([e for e in trajectory.events if isinstance(e, Observed)]) == 2
     roles = [message["role"] for message in requests[2]["messages"]]
     assert roles == ["system", "system", "user", "assistant", "tool", "user", "assistant", "tool"]
 
@@ -109,6 +109,6 @@ def test_waiting_for_retries_is_left_out_of_the_time(engine: BuiltinEngine) -> N
     slow = fault(429, headers={"Retry-After": "1"})
     result, trajectory, _ = run(engine, slow, completion("x", [PICK]), completion("Done."))
     assert result.completion == 1.0
-    assert trajectory.thoughts[0].waited_s >= 0.9
+    assert trajectory.thoughts[0].reply.waited_s >= 0.9
     assert trajectory.ended is not None
-    assert trajectory.thoughts[0].model_s < trajectory.thoughts[0].waited_s
+    assert trajectory.thoughts[0].reply.seconds < trajectory.thoughts[0].reply.waited_s

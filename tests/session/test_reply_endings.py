@@ -60,7 +60,7 @@ def play(
 
 
 def endings(trajectory: Trajectory) -> list[Ending | None]:
-    return [thought.ending for thought in trajectory.thoughts]
+    return [thought.reply.ending for thought in trajectory.thoughts]
 
 
 @every_way
@@ -74,7 +74,7 @@ def test_a_cut_off_answer_is_told_so_and_counted(
     assert result.termination is TerminationReason.ANSWERED
     assert (result.answer, result.unreadable) == ("Done.", 1)
     assert endings(trajectory) == [Ending.CUT_OFF, Ending.ANSWER]
-    assert trajectory.thoughts[0].finish_reason == CUT_OFF[dialect.name]
+    assert trajectory.thoughts[0].reply.finish_reason == CUT_OFF[dialect.name]
     assert f"cut off after {OUTPUT} tokens" in json.dumps(requests[-1])
     result, trajectory, _ = play(dialect, rung, [cut] * 3 * tries, engine)
     assert result.termination is TerminationReason.PROTOCOL
@@ -90,7 +90,7 @@ def test_what_a_filter_refused_does_not_go_back(
     result, trajectory, requests = play(dialect, rung, [stopped, done], engine)
     assert result.answer == "Done."
     assert endings(trajectory) == [Ending.FILTERED, Ending.ANSWER]
-    assert trajectory.thoughts[0].note == "Something unspeakable"
+    assert trajectory.thoughts[0].turn.note == "Something unspeakable"
     told = json.dumps(requests[-1])
     assert "filter of the provider" in told and "unspeakable" not in told
 
@@ -139,7 +139,7 @@ def test_a_step_that_goes_on_to_the_limit_is_carried_out(engine: BuiltinEngine) 
     answers = [chat.ended("length", made_up), chat.answer(ANSWERS[Rung.REACT])]
     result, trajectory, _ = play(chat, Rung.REACT, answers, engine)
     assert (result.steps, result.answer) == (1, "Done.")
-    assert [t.finish_reason for t in trajectory.thoughts] == ["length", "stop"]
+    assert [t.reply.finish_reason for t in trajectory.thoughts] == ["length", "stop"]
 
 
 DRAFTS = {

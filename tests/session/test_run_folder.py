@@ -28,7 +28,7 @@ from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.record.writer import TrajectoryWriter
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.session.chat import ChatSession
+from adamo_vh.session.session import Session
 
 SMALL = (320, 180)
 LOOK = AIMessage("I look.", (ToolCall("c1", "Look", {"x": 0.5, "y": -1.0, "z": 0.8}),))
@@ -161,7 +161,7 @@ def test_a_run_that_is_still_going_is_not_resumed(tmp_path: Path, engine: Builti
 
     def second() -> None:
         model.asked.wait(60)
-        for attempt in (adamo_vh.resume_episode, ChatSession.resume):
+        for attempt in (adamo_vh.resume_episode, Session.resume):
             try:
                 attempt(tmp_path)
             except FolderInUseError as error:
@@ -216,7 +216,7 @@ def test_a_resume_that_fails_changes_nothing(tmp_path: Path, engine: BuiltinEngi
     lines[first] = json.dumps(act, separators=(",", ":")) + "\n"
     (tmp_path / EVENTS).write_text("".join(lines) + '{"half":')
     before = everything(tmp_path)
-    for attempt in (adamo_vh.resume_episode, ChatSession.resume):
+    for attempt in (adamo_vh.resume_episode, Session.resume):
         with pytest.raises(RecordError) as caught:
             attempt(tmp_path)
         assert f"First difference in line {first + 1}" in str(caught.value)
@@ -233,7 +233,7 @@ def test_a_record_of_another_format_is_not_touched(
     (tmp_path / MANIFEST).write_text(json.dumps({**manifest, "format": number}))
     (tmp_path / RESULT).unlink()
     before = everything(tmp_path)
-    for attempt in (adamo_vh.resume_episode, adamo_vh.replay_episode, ChatSession.resume):
+    for attempt in (adamo_vh.resume_episode, adamo_vh.replay_episode, Session.resume):
         with pytest.raises(RecordError, match=f"has format {number}"):
             attempt(tmp_path)
     assert everything(tmp_path) == before

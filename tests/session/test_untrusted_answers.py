@@ -13,14 +13,16 @@ from tests.dialects import DIALECTS, Anthropic, Chat, Dialect, uri
 from tests.fake_provider import FakeProvider, completion
 from tests.talk import ASK, NAMES, QUICK, TOOLS, tell
 
+from adamo_vh.cognition.profile import PAPER
+from adamo_vh.cognition.turns import read_turn
 from adamo_vh.errors import ProviderError, RefusedError
 from adamo_vh.inference.arguments import read_arguments
 from adamo_vh.inference.ladder import Ladder
-from adamo_vh.inference.model import Model, Rung, Sampling
+from adamo_vh.inference.model import Model, Reply, Rung, Sampling
 from adamo_vh.inference.remote.provider import ProviderModel
 from adamo_vh.inference.remote.retry import RetryPolicy
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.trajectory import Ended, Event, read_trajectory, thought
+from adamo_vh.record.trajectory import Ended, Event, Thought, read_trajectory
 from adamo_vh.record.writer import TrajectoryWriter
 
 every_wire = pytest.mark.parametrize("dialect", DIALECTS, ids=NAMES)
@@ -30,6 +32,10 @@ SURROGATE = "\ud800"
 
 def nested(depth: int) -> str:
     return '{"x": ' + "[" * depth + "]" * depth + "}"
+
+
+def thought(reply: Reply) -> Thought:
+    return Thought(0, "", 1, read_turn(reply, PAPER))
 
 
 def written(folder: Path, event: Event) -> Event:
@@ -46,7 +52,7 @@ def test_an_id_that_no_file_can_hold_is_recorded(dialect: Dialect, tmp_path: Pat
     answer = dialect.answer("I look.", [(f"call_{SURROGATE}", "Look", {"x": 1})])
     reply = tell(dialect, [answer] * 3).reply
     assert [call.name for call in reply.message.calls] == ["Look"]
-    assert written(tmp_path, thought(0, "", ASK, reply)) == thought(0, "", ASK, reply)
+    assert written(tmp_path, thought(reply)) == thought(reply)
 
 
 @pytest.mark.parametrize("depth", [100, 300, 900, 5000])
@@ -54,7 +60,7 @@ def test_arguments_nested_beyond_reason_are_feedback(depth: int, tmp_path: Path)
     assert read_arguments(nested(depth)) is None
     reply = tell(Chat(), [Chat().answer("", [("a", "Look", nested(depth))])]).reply
     assert reply.message.calls[0].arguments is None
-    written(tmp_path, thought(0, "", ASK, reply))
+    written(tmp_path, thought(reply))
 
 
 def test_arguments_nested_within_reason_are_read() -> None:
@@ -80,7 +86,7 @@ def test_a_step_that_no_file_can_hold_is_recorded(tmp_path: Path) -> None:
         model: Model = Ladder(ProviderModel(server.uri(), QUICK), Rung.SCHEMA)
         reply = model.complete(ASK, TOOLS, Sampling())
     assert reply.unreadable
-    written(tmp_path, thought(0, "", ASK, reply))
+    written(tmp_path, thought(reply))
 
 
 def test_a_setting_that_the_library_insists_on_is_not_dropped_for_ever() -> None:

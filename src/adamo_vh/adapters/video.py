@@ -16,8 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo_vh.cognition.profile import Profile
-from adamo_vh.cognition.turns import read_turn
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.observation import BodyState, Frame
@@ -37,8 +35,6 @@ _FOLLOW = 0.1
 """Share of the way to its ideal place that the camera goes in each frame."""
 _INK, _PAPER, _CALL = (236, 232, 224), (24, 24, 27), (150, 190, 250)
 _COLOURS = {"done": (142, 206, 142), "corrected": (232, 200, 110), "refused": (236, 128, 118)}
-_NOTED = Profile(note_argument=True, finish_check=True)
-"""Takes the note and the confidence out of the arguments, where they are."""
 
 _Line = tuple[str, str, tuple[int, int, int]]
 """Label, words and colour of a subtitle."""
@@ -86,10 +82,10 @@ class VideoRecorder:
                 self._text = [("Instruction", event.instruction, _INK)]
             case Observed(step=0):
                 self._pause(_PAUSE_S)
-            case Thought() if event.calls and not event.unreadable:
-                self._wishes = read_turn(event.reply, _NOTED).wishes
+            case Thought() if event.turn.wishes and not event.reply.unreadable:
+                self._wishes = event.turn.wishes
                 note = next((w.note for w in self._wishes if w.note.strip()), "")
-                note = (event.note.strip() or note).split("Memory:")[0]
+                note = (event.reply.message.text.strip() or note).split("Memory:")[0]
                 calls = self._next()
                 label = f"Step {event.step + 1}" if calls else "Finish"
                 self._text = [self._text[0], (label, note, _INK), *calls]

@@ -47,6 +47,17 @@ class Task:
         """Ids of the objects that are to be moved; anchors are not."""
         return frozenset(condition.id for condition in self.conditions)
 
+    @property
+    def objects(self) -> frozenset[int]:
+        """Ids of all objects that it is about, anchors too."""
+        anchors = {c.anchor for c in self.conditions if isinstance(c, Near)}
+        return self.targets | anchors
+
+    @property
+    def areas(self) -> frozenset[str]:
+        """Kinds of the floor areas that it is about."""
+        return frozenset(c.kind for c in self.conditions if isinstance(c, InArea))
+
 
 def task(task_id: str) -> Task:
     """The task with an id, e.g. "T7".

@@ -75,6 +75,7 @@ def adamo(
 
 @app.command()
 def run(
+    context: typer.Context,
     instruction: Annotated[
         str | None, typer.Argument(help="What the agent is told.", show_default=False)
     ] = None,
@@ -86,7 +87,12 @@ def run(
     tool_calls: ToolCalls = "auto",
     profile: Profile = "paper",
     switch: Switch = None,
-    seed: Annotated[int, typer.Option(help="Seed of the episode.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the model's draws.")] = 0,
+    variation: Annotated[int, typer.Option(help="Variation of the scene; only 0 so far.")] = 0,
+    tool: Annotated[
+        list[str] | None,
+        typer.Option(help="One more tool, from another package; may be repeated."),
+    ] = None,
     k: Annotated[int, typer.Option(help="Steps in the short-term memory.")] = 50,
     grid: Annotated[int, typer.Option(help="Reference points along a side.")] = 6,
     resolution: Annotated[str, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = "1920x1080",
@@ -101,7 +107,8 @@ def run(
     record: Record = False,
     out: RunFolder = None,
     resume: Annotated[
-        Path | None, typer.Option(help="Go on with an interrupted run; takes no other setting.")
+        Path | None,
+        typer.Option(help="Go on with an interrupted run; takes --budget and --json alone."),
     ] = None,
     video: Annotated[
         Path | None, typer.Option(help="Film the episode: FILE.webm (VP8) or FILE.avi.")
@@ -110,10 +117,12 @@ def run(
 ) -> None:
     """Run one episode: an instruction in plain words, or a task of the benchmark."""
     from adamo_vh.cli.episode import resume_and_show, run_and_show
-    from adamo_vh.cli.settings import pairs, read_budget
+    from adamo_vh.cli.settings import pairs, read_budget, refuse_others
 
+    caps = read_budget(pairs(budget, "budget"))
     if resume is not None:
-        resume_and_show(resume, as_json=json)
+        refuse_others(context, "resume", "budget", "json")
+        resume_and_show(resume, caps, as_json=json)
         return
     run_and_show(
         instruction,
@@ -127,9 +136,11 @@ def run(
         tool_calls=tool_calls,
         profile=profile,
         switches=pairs(switch, "switch"),
-        budget=read_budget(pairs(budget, "budget")),
+        added_tools=tool or (),
+        budget=caps,
         record=record,
         seed=seed,
+        variation=variation,
         k=k,
         grid=grid,
         resolution=resolution,
@@ -141,6 +152,7 @@ def run(
 
 @app.command()
 def chat(
+    context: typer.Context,
     scene: Scene = "s1",
     figure: Figure = "mara",
     labeling: Labeling = "sem",
@@ -160,8 +172,10 @@ def chat(
 ) -> None:
     """Talk with the agent: one instruction after another, in the same world, remembered."""
     from adamo_vh.cli.chat import talk
-    from adamo_vh.cli.settings import pairs, read_budget
+    from adamo_vh.cli.settings import pairs, read_budget, refuse_others
 
+    if resume is not None:
+        refuse_others(context, "resume", "budget")
     talk(
         resume=resume,
         out=out,

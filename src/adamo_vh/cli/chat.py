@@ -10,17 +10,16 @@ from typing import Any
 import typer
 from rich.console import Console
 
-from adamo_vh.cli.episode import run_folder
+from adamo_vh.cli.episode import mark_latest, run_folder
 from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.progress import Progress
 from adamo_vh.cli.terminal import is_text, line, say
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
-from adamo_vh.episode.result import EpisodeConfig
-from adamo_vh.perception import Labeling
+from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.readable import readable
 from adamo_vh.record.trajectory import Ended
-from adamo_vh.session.chat import ChatSession
-from adamo_vh.session.episode import chosen_profile, member
+from adamo_vh.session.forecasting import check_price
+from adamo_vh.session.session import Session
 
 _LEAVE = ("quit", "exit", "/quit", "/exit", "/q")
 _ASK = ("/help", "/?", "help", "?")
@@ -38,9 +37,6 @@ def talk(
     out: Path | None,
     record: bool,
     budget: Budget,
-    profile: str,
-    switches: dict[str, str],
-    labeling: str,
     **settings: Any,
 ) -> None:
     """Read instructions from the terminal, or from a pipe, until they end."""
@@ -53,24 +49,21 @@ def talk(
         first = None
         if resume is not None:
             say(f"Going back to where {resume} was left ...", "dim")
-            session = ChatSession.resume(resume, guards=guards, observers=observers)
+            session = Session.resume(resume, guards=guards, observers=observers)
         else:
             first = heard.next()
             if first is None:
                 raise typer.Exit(heard.code)
-            config = EpisodeConfig(
-                instruction=first,
-                labeling=member(Labeling, labeling, "labeling"),
-                profile=chosen_profile(profile, switches),
-                **settings,
-            )
+            config = EpisodeConfig.of(first, **settings)
             folder = stack.enter_context(run_folder(out, first))
-            session = ChatSession.begin(
+            session = Session.begin(
                 config, folder, record=record, guards=guards, observers=observers
             )
+            mark_latest(folder)
         kept = f"Kept in {session.folder}; go on with: adamo-vh chat --resume {session.folder}"
         stack.callback(say, kept)
         stack.enter_context(session)
+        check_price(session.config.model, session.model, budget)
         said = first or heard.next()
         while said is not None:
             _answer(session.say(said))

@@ -20,9 +20,9 @@ from adamo_vh.cli.terminal import line, put_json, say
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.engine import World
+from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import EpisodeResult, to_json
-from adamo_vh.errors import ConfigError
-from adamo_vh.record.run_folder import MANIFEST, reserve
+from adamo_vh.record.run_folder import reserve
 from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.record.trajectory import Observer
 
@@ -34,31 +34,33 @@ def run_and_show(
     *,
     as_json: bool,
     out: Path | None,
-    resolution: str,
+    record: bool,
     max_steps: int,
     video: Path | None,
     **settings: Any,
 ) -> None:
     """Run an episode and print what happens, or one JSON object at the end."""
-    from adamo_vh.session.episode import run_episode
+    from adamo_vh.session.session import Session
 
+    limits = Limits(max_steps=max_steps)
+    if video is not None:
+        # Drawing the film takes minutes that are not the agent's.
+        limits = replace(limits, max_seconds=1e9)
+    config = EpisodeConfig.of(instruction, limits=limits, **settings)
+    observers: list[Observer] = [] if as_json else [Progress(Console())]
     with ExitStack() as stack:
-        folder = stack.enter_context(run_folder(out, settings["task"] or instruction or ""))
-        observers: list[Observer] = [] if as_json else [Progress(Console())]
-        limits = Limits(max_steps=max_steps)
+        engine = None
         if video is not None:
-            settings["engine"] = stack.enter_context(filming(video, settings, observers))
-            # Drawing the film takes minutes that are not the agent's.
-            limits = replace(limits, max_seconds=1e9)
-        result = run_episode(
-            instruction,
-            resolution=parse_resolution(resolution),
-            limits=limits,
-            out=folder,
-            observers=observers,
-            announce=None if as_json else lambda ahead: _announce(ahead, settings["budget"]),
-            **settings,
+            engine = stack.enter_context(filming(video, config, observers))
+        folder = stack.enter_context(run_folder(out, config.task or config.instruction))
+        session = stack.enter_context(
+            Session.begin(config, folder, record=record, engine=engine, observers=observers)
         )
+        mark_latest(folder)
+        if not as_json and (ahead := session.forecast()):
+            _announce(ahead, config.budget)
+        session.say(config.instruction)
+        result = session.result()
     _show(result, folder, as_json=as_json)
 
 
@@ -70,12 +72,12 @@ def _announce(ahead: Forecast, budget: Budget) -> None:
 
 
 @contextmanager
-def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> Iterator[World]:
+def filming(path: Path, config: EpisodeConfig, observers: list[Observer]) -> Iterator[World]:
     """An engine whose episode is filmed; the film is finished at the end."""
     from adamo_vh.adapters.video import VideoRecorder
     from adamo_vh.session.filming import FilmSet
 
-    film_set = FilmSet.of(settings["scene"], settings["figure"])
+    film_set = FilmSet.of(config.scene, config.figure)
     recorder = VideoRecorder(path, film_set)
     observers.append(recorder)
     try:
@@ -85,12 +87,13 @@ def filming(path: Path, settings: dict[str, Any], observers: list[Observer]) -> 
         film_set.engine.close()
 
 
-def resume_and_show(folder: Path, *, as_json: bool) -> None:
-    """Go on with an interrupted run."""
-    from adamo_vh.session.episode import resume_episode
+def resume_and_show(folder: Path, budget: Budget, *, as_json: bool) -> None:
+    """Go on with an interrupted run, under its own budget or a new one."""
+    from adamo_vh.session.runs import resume_episode
 
     progress = () if as_json else (Progress(Console()),)
-    _show(resume_episode(folder, observers=progress), folder, as_json=as_json)
+    result = resume_episode(folder, budget=budget or None, observers=progress)
+    _show(result, folder, as_json=as_json)
 
 
 def _show(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
@@ -104,7 +107,7 @@ def _show(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
 
 def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
     """Replay a run folder and say whether every state came out the same."""
-    from adamo_vh.session.replaying import replay_episode
+    from adamo_vh.session.runs import replay_episode
 
     report = replay_episode(run_dir, start)
     same = not report.mismatches
@@ -125,23 +128,11 @@ def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
         raise typer.Exit(Exit.NO)
 
 
-def parse_resolution(text: str) -> tuple[int, int]:
-    """WIDTHxHEIGHT as two integers.
-
-    Raises:
-        ConfigError: The text has another form.
-    """
-    match = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text.strip().lower())
-    if match is None:
-        raise ConfigError(f"resolution {text!r}: write WIDTHxHEIGHT, for example 1920x1080.")
-    return int(match[1]), int(match[2])
-
-
 @contextmanager
 def run_folder(out: Path | None, what: str) -> Iterator[Path]:
     """The folder of a run: what was asked for, or a new one below runs/ for this run alone.
 
-    Afterwards runs/latest points to it, if anything was recorded.
+    A new one is taken away again if nothing was recorded.
 
     Args:
         out: What was asked for.
@@ -151,9 +142,8 @@ def run_folder(out: Path | None, what: str) -> Iterator[Path]:
     try:
         yield folder
     finally:
-        if (folder / MANIFEST).is_file():
-            _mark_latest(folder)
-        elif out is None:
+        if out is None:
+            # Not empty, unless the run failed before it began.
             with suppress(OSError):
                 folder.rmdir()
 
@@ -164,7 +154,7 @@ def _new_run_folder(what: str) -> Path:
     return reserve(RUNS, f"{stamp}-{words}")
 
 
-def _mark_latest(folder: Path) -> None:
+def mark_latest(folder: Path) -> None:
     """Point runs/latest at the newest run, where the file system allows it."""
     half = RUNS / f"latest.{os.getpid()}.part"
     with suppress(OSError):
@@ -179,9 +169,9 @@ def result_json(result: EpisodeResult) -> dict[str, Any]:
     """The object that `adamo-vh run --json` prints."""
     data = to_json(result)
     keys = (
-        "task instruction scene labeling profile model model_kind seed completion strict "
-        "conditions violations termination why answer steps model_calls calls missing_notes "
-        "unreadable requests usage cost_usd rungs model_s world_s walked_m direct_m run state_hash"
+        "task instruction scene labeling profile model model_kind seed termination why answer "
+        "steps model_calls calls missing_notes unreadable requests usage cost_usd rungs model_s "
+        "world_s walked_m direct_m run state_hash"
     )
     world = [
         {
@@ -194,8 +184,14 @@ def result_json(result: EpisodeResult) -> dict[str, Any]:
         }
         for item in result.world()
     ]
+    score = data["score"] or {
+        "completion": None,
+        "strict": None,
+        "conditions": [],
+        "violations": [],
+    }
     counted = {"tokens": result.tokens, "world": world}
-    return {**{key: data[key] for key in keys.split()}, **counted}
+    return {**{key: data[key] for key in keys.split()}, **score, **counted}
 
 
 def _accounts(result: EpisodeResult) -> str:

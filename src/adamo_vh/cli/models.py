@@ -19,7 +19,7 @@ from adamo_vh.inference.remote.capabilities import (
     ToolSupport,
     load_capabilities,
 )
-from adamo_vh.session.players import create_player
+from adamo_vh.session.minds import model_of
 
 _SIGHT_FIX = "use a model that sees; without pictures it has the symbolic text alone"
 _OWN_SIGHT_FIX = f"start llama-server with --mmproj FILE; else {_SIGHT_FIX}"
@@ -74,7 +74,7 @@ class _Line:
 
 def check(uri: str, *, refresh: bool, as_json: bool) -> None:
     """Say what a model can do and how it will be asked; exit 1 if it cannot be reached."""
-    local = create_player(uri) if uri.startswith("replay:") else create_local_model(uri)
+    local = model_of(uri) if uri.startswith("replay:") else create_local_model(uri)
     if local is not None:
         _show_local(uri, local.info.kind, as_json=as_json)
         return

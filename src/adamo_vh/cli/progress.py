@@ -10,8 +10,6 @@ from rich.console import Console
 
 from adamo_vh.action import Outcome
 from adamo_vh.cli.terminal import line
-from adamo_vh.cognition.profile import Profile
-from adamo_vh.cognition.turns import read_turn
 from adamo_vh.observation import Frame
 from adamo_vh.record.trajectory import (
     Acted,
@@ -26,8 +24,6 @@ from adamo_vh.record.trajectory import (
 from adamo_vh.record.turn import Wish
 
 _STYLE = {Outcome.DONE: "green", Outcome.CORRECTED: "yellow", Outcome.REFUSED: "red"}
-_NOTED = Profile(note_argument=True, finish_check=True)
-"""Takes the note and the confidence out of the arguments, where they are, and knows Finish."""
 
 
 class Progress:
@@ -63,17 +59,17 @@ class Progress:
                 self._settle()
 
     def _thought(self, event: Thought) -> None:
-        wishes = read_turn(event.reply, _NOTED).wishes
-        if event.unreadable:
-            self._line("unreadable", event.unreadable, "red")
+        wishes, text = event.turn.wishes, event.reply.message.text.strip()
+        if event.reply.unreadable:
+            self._line("unreadable", event.reply.unreadable, "red")
         elif len(wishes) == 1 and wishes[0].is_finish:
             self._finish(wishes[0])
         elif wishes:
-            note = event.note.strip() or " ".join(dict.fromkeys(wish.note for wish in wishes))
+            note = text or " ".join(dict.fromkeys(wish.note for wish in wishes))
             self._line(f"step {event.step + 1}", note.strip() or "(no note)", "")
             self._wishes = wishes
         else:
-            self._said = event.note or "(nothing)"
+            self._said = text or "(nothing)"
 
     def _finish(self, wish: Wish) -> None:
         said = wish.arguments or {}

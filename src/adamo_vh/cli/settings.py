@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import fields
 
+import typer
+
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.errors import ConfigError
 
@@ -44,3 +46,24 @@ def read_budget(caps: dict[str, str]) -> Budget:
             whole = "whole " if key in _WHOLE else ""
             raise ConfigError(f"--budget {key}={text}: {text!r} is no {whole}number.") from None
     return Budget(**values)  # type: ignore[arg-type]
+
+
+def refuse_others(context: typer.Context, *allowed: str) -> None:
+    """Make sure that nothing but some parameters of a command was given.
+
+    Raises:
+        ConfigError: Something else was; names it.
+    """
+    given = [
+        parameter.opts[0]
+        for parameter in context.command.params
+        if parameter.name not in allowed
+        and (source := context.get_parameter_source(str(parameter.name))) is not None
+        and source.name != "DEFAULT"
+    ]
+    if given:
+        raise ConfigError(
+            f"--{allowed[0]} goes on with the recorded settings, and takes no {', '.join(given)}: "
+            f"leave it out (with --{allowed[0]} you can give "
+            f"{', '.join(f'--{name}' for name in allowed[1:])})."
+        )

@@ -50,8 +50,8 @@ def list_tasks(*, as_json: bool) -> None:
 def verify(scene: str | None, *, as_json: bool) -> None:
     """Play oracle and idle for every task, scene and labeling; exit 1 if a task is unsound."""
     from adamo_vh.benchmark.verify import verify_tasks
+    from adamo_vh.session.bodies import create_engine
     from adamo_vh.session.builtin import scene_names
-    from adamo_vh.session.engines import create_engine
 
     rows = []
     for name in [scene] if scene else scene_names():

@@ -3,35 +3,39 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from adamo_vh.action import Inspect, action_name
 from adamo_vh.action_server import ActionResult, ActionServer, Sighting, execute_call
 from adamo_vh.cognition.doubts import Doubts
-from adamo_vh.cognition.guards import Guard, LoopGuard, ProtocolGuard
-from adamo_vh.cognition.memory.short_term import Result, ShortTermMemory
+from adamo_vh.cognition.guards import Guard
+from adamo_vh.cognition.memory.protocol import Memory, Result
+from adamo_vh.cognition.memory.short_term import ShortTermMemory
 from adamo_vh.cognition.profile import PAPER, Profile
 from adamo_vh.cognition.prompts import render
+from adamo_vh.cognition.stops import Errand, Stops
+from adamo_vh.cognition.telling import Telling, fault
 from adamo_vh.cognition.turns import offered, read_turn
-from adamo_vh.errors import AdamoError
+from adamo_vh.engine import WorldEvent
 from adamo_vh.inference.messages import AIMessage
 from adamo_vh.inference.model import Model, Sampling
 from adamo_vh.inference.tidy import tidied
-from adamo_vh.observation import Frame, Observation
+from adamo_vh.observation import AgentState, Frame, Observation
 from adamo_vh.perception import TextForm
-from adamo_vh.record.termination import Limits, Stopwatch, TerminationReason
+from adamo_vh.record.termination import Limits, Stop, TerminationReason
 from adamo_vh.record.trajectory import (
+    Acted,
     Ended,
     Event,
+    Happened,
     LeftOut,
     Observer,
     Started,
-    acted,
+    Thought,
     observed,
     shown,
-    thought,
 )
 from adamo_vh.record.turn import Turn, Wish
 
@@ -59,8 +63,11 @@ class Agent:
         system_prompt: str,
         config: AgentConfig | None = None,
         *,
+        memory: Memory | None = None,
         guards: Sequence[Guard] = (),
+        records: Sequence[Observer] = (),
         observers: Sequence[Observer] = (),
+        known: Sequence[Event] = (),
     ) -> None:
         """Bring a model and a body together.
 
@@ -70,48 +77,56 @@ class Agent:
             system_prompt: The fixed instructions.
             config: How the model is spoken to and how far it may go; the paper's baseline by
                 default.
+            memory: What makes a prompt of what happened; the short-term memory by default.
             guards: Further reasons to stop, e.g. a budget.
-            observers: Are told of every event.
+            records: Must be told of every event: a fault of theirs ends the episode.
+            observers: Are told of every event; a fault of theirs ends nothing.
+            known: What is on record already and will come again, to the same ends.
         """
+        config = config or AgentConfig()
         self._model = model
         self._server = server
         self._system_prompt = system_prompt
-        config = config or AgentConfig()
         self._profile, self._limits = config.profile, config.limits
         self._sampling = replace(config.sampling, exact=config.profile.exact_sampling)
-        self._memory = ShortTermMemory(system_prompt, config.k, config.profile, config.text_form)
-        self._guards: tuple[Guard, ...] = (
-            ProtocolGuard(config.limits.max_unreadable),
-            LoopGuard(config.limits.max_repeats),
-            *guards,
+        self._memory: Memory = memory or ShortTermMemory(
+            system_prompt, config.k, config.profile, config.text_form
         )
-        self._observers: tuple[Observer, ...] = (*self._guards, *observers)
+        self._stops = Stops(config.limits, guards, known)
+        self._telling = Telling((self._stops, *records), observers)
         self._tools = offered(server.actions, config.profile)
         self._steps = 0
-        self._state_hash = ""
-        """Digest of the world after the last answer of the server."""
+        self._errand = Errand(0, Doubts(config.profile))
+        self._state_hash = self._seen_state = ""
+        """Digests of the world after the last answer of the server, and at the last view."""
+        self._body: AgentState | None = None
+        """The body after the last answer of the server."""
 
     def run(self, instruction: str) -> Ended:
         """Carry out one instruction; a further one goes on in the same world and memory.
 
         Returns:
-            How it ended. A fault of a provider or of ours ends it as `BROKEN`, for the caller to
-            leave unscored.
+            How it ended. Whatever is raised by the model, the engine, a tool or the record ends it
+            as `BROKEN`, for the caller to leave unscored.
         """
         try:
-            self._begin(instruction)
-            while (reason := self._stop()) is None:
-                turn = self.think()
-                if objection := self._doubts.about_turn(turn):
-                    self._object(turn, objection)
-                elif turn.ends:
-                    self._reply(turn, render("said"))
-                    return self._end(turn.reason, turn.answer)
-                else:
-                    self.act(turn)
-            return self._end(reason, "")
-        except AdamoError as error:
-            return self._end(TerminationReason.BROKEN, f"{type(error).__name__}: {error}")
+            return self._end(self._pursue(instruction))
+        except Exception as error:
+            return self._end(Stop(TerminationReason.BROKEN, answer=fault(error)))
+
+    def _pursue(self, instruction: str) -> Stop:
+        """Perceive, reason and act until there is a reason to stop."""
+        self._begin(instruction)
+        while (stop := self._stops.stop(self._errand, self._steps)) is None:
+            turn = self.think()
+            if objection := self._errand.doubts.about_turn(turn):
+                self._object(turn, objection)
+            elif turn.ends:
+                self._reply(turn, render("said"))
+                return turn.stop
+            else:
+                self.act(turn)
+        return stop
 
     def think(self) -> Turn:
         """Ask the model."""
@@ -119,9 +134,10 @@ class Agent:
         asked = time.monotonic()
         reply = tidied(self._model.complete(messages, self._tools, self._sampling), self._tools)
         # Only the reply's own time counts: waits do not, and a recorded reply took its time before.
-        self._watch.leave_out(time.monotonic() - asked - reply.seconds)
-        self._tell(thought(self._steps, self._memory.state_text, messages, reply))
-        return read_turn(reply, self._profile)
+        self._errand.watch.leave_out(time.monotonic() - asked - reply.seconds)
+        turn = read_turn(reply, self._profile)
+        self._tell(Thought(self._steps, self._memory.state_text, len(messages), turn))
+        return turn
 
     def act(self, turn: Turn) -> None:
         """Execute the calls of a turn up to the first surprise; every one gets its answer."""
@@ -132,10 +148,18 @@ class Agent:
         self._look_again(results)
         self._memory.add_step(*self._remembered(turn.message, results))
 
+    def happened(self, event: WorldEvent, state_hash: str) -> None:
+        """Take note that something happened in the world which the body did not do.
+
+        Args:
+            event: What happened; the model is told nothing but what it sees.
+            state_hash: Digest of the world afterwards.
+        """
+        self._state_hash = state_hash
+        self._tell(Happened(self._steps, event, state_hash))
+
     def _begin(self, instruction: str) -> None:
-        self._watch = Stopwatch()
-        self._first_step = self._steps
-        self._doubts = Doubts(self._profile)
+        self._errand = Errand(self._steps, Doubts(self._profile))
         saved, sighting = "", None
         try:
             sighting = self._server.observe()
@@ -145,12 +169,6 @@ class Agent:
             # Without a first view the record still says what was asked.
             self._tell(Started(instruction, self._system_prompt, self._state_hash, saved))
         self._memory.instruct(instruction, self._perceived(sighting.observation))
-
-    def _stop(self) -> TerminationReason | None:
-        """The first reason to stop before another question."""
-        limit = self._limits.exceeded(self._steps - self._first_step, self._watch.seconds)
-        reasons = (limit, *(guard.verdict() for guard in self._guards))
-        return next((reason for reason in reasons if reason is not None), None)
 
     def _object(self, turn: Turn, objection: str) -> None:
         """Say why a turn is not carried out, or does not end the episode."""
@@ -171,23 +189,23 @@ class Agent:
         if len(results) >= self._profile.plan:
             most = self._profile.plan
             return "one action a turn" if most == 1 else f"at most {most} actions a turn"
-        if self._steps - self._first_step >= self._limits.max_steps:
+        if self._steps - self._errand.first_step >= self._limits.max_steps:
             return "the step limit is reached"
         if results and not results[-1].went_as_planned:
             return "an earlier call of this turn did not go as planned"
         return ""
 
     def _left_out(self, wish: Wish, why_not: str) -> Result:
-        self._tell(LeftOut(self._steps, wish.call.name, why_not))
+        self._tell(LeftOut(self._steps, wish.call.id, wish.call.name, why_not))
         result = self._result(wish, render("not_executed", why=why_not))
         return replace(result, left_out=why_not)
 
     def _carry_out(self, wish: Wish) -> Result:
-        if doubt := self._doubts.about_pick(wish):
-            seen = self._execute(action_name(Inspect), wish.arguments)
+        if doubt := self._errand.doubts.about_pick(wish):
+            seen = self._execute(action_name(Inspect), wish)
             result = self._result(wish, f"{doubt} {seen.feedback.text}")
             return replace(result, pictures=seen.pictures)
-        done = self._execute(wish.call.name, wish.arguments)
+        done = self._execute(wish.call.name, wish)
         return replace(
             self._result(wish, done.feedback.text),
             outcome=done.feedback.outcome,
@@ -195,12 +213,25 @@ class Agent:
             pictures=done.pictures,
         )
 
-    def _execute(self, name: str, arguments: Mapping[str, Any] | None) -> ActionResult:
+    def _execute(self, name: str, wish: Wish) -> ActionResult:
         started = time.monotonic()
-        result = execute_call(self._server, name, arguments)
+        result = execute_call(self._server, name, wish.arguments)
+        world_s = time.monotonic() - started
         self._note(result)
         self._steps += 1
-        self._tell(acted(self._steps, name, arguments, result, time.monotonic() - started))
+        self._tell(
+            Acted(
+                self._steps,
+                wish.call.id,
+                name,
+                wish.arguments,
+                result.feedback,
+                result.agent,
+                result.state_hash,
+                result.saved,
+                world_s,
+            )
+        )
         for frame in result.pictures:
             self._tell(shown(self._steps, frame), frame)
         if result.observation is not None:
@@ -208,6 +239,7 @@ class Agent:
         return result
 
     def _result(self, wish: Wish, text: str) -> Result:
+        assert self._body is not None  # Every errand begins with a view.
         return Result(wish.call.id, wish.call.name, text, self._body)
 
     def _look_again(self, results: list[Result]) -> None:
@@ -242,15 +274,25 @@ class Agent:
         self._tell(observed(self._steps, view), view.frame)
         return view
 
-    def _end(self, reason: TerminationReason, answer: str) -> Ended:
-        if reason.is_scored:
-            self._server.say(answer)
-        steps, seconds = self._steps - self._first_step, self._watch.seconds
-        why = next((guard.why for guard in self._guards if guard.verdict() is reason), "")
-        ended = Ended(steps, reason, answer, self._state_hash, seconds, why)
-        self._tell(ended)
+    def _end(self, stop: Stop) -> Ended:
+        if stop.reason.is_scored:
+            self._server.say(stop.answer)
+        errand = self._errand
+        ended = Ended(
+            self._steps - errand.first_step,
+            stop.reason,
+            stop.answer,
+            self._state_hash,
+            errand.watch.seconds,
+            stop.why,
+        )
+        try:
+            self._tell(ended)
+        except Exception:
+            # What broke the episode is told; that it could not be written as well is not news.
+            if stop.reason is not TerminationReason.BROKEN:
+                raise
         return ended
 
     def _tell(self, event: Event, frame: Frame | None = None) -> None:
-        for observer in self._observers:
-            observer.notify(event, frame)
+        self._telling.tell(event, frame)

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from adamo_vh.errors import ConfigError
-from adamo_vh.inference.model import Usage
+from adamo_vh.inference.model import Reply, Usage
 from adamo_vh.observation import Frame
-from adamo_vh.record.termination import TerminationReason
+from adamo_vh.record.termination import Stop, TerminationReason
 from adamo_vh.record.trajectory import Acted, Event, Started, Thought
 
 
@@ -95,18 +95,6 @@ class Ledger:
         with self._lock:
             self._spent = replace(self._spent, seconds=self._spent.seconds + seconds)
 
-    def remaining(self, budget: Budget) -> Budget:
-        """What is left of every cap; nothing of the money once a price is unknown."""
-        spent = self.spent
-        usd = 0.0 if spent.unpriced else _left(budget.usd, spent.usd)
-        calls, tokens = _left(budget.calls, spent.calls), _left(budget.tokens, spent.tokens)
-        return Budget(
-            None if tokens is None else int(tokens),
-            None if budget.usd is None else usd,
-            None if calls is None else int(calls),
-            _left(budget.seconds, spent.seconds),
-        )
-
     def exceeded(self, budget: Budget, next_tokens: int = 0) -> str | None:
         """Why another call does not fit into a budget; None if it may.
 
@@ -115,10 +103,6 @@ class Ledger:
             next_tokens: Tokens that the next call takes at least.
         """
         return next(_reasons(self.spent, budget, next_tokens), None)
-
-
-def _left(cap: float | None, spent: float) -> float | None:
-    return None if cap is None else max(0.0, cap - spent)
 
 
 def _reasons(spent: Spent, budget: Budget, next_tokens: int) -> Iterator[str]:
@@ -165,8 +149,6 @@ class BudgetGuard:
         self._own = Ledger()
         self._run = ledger or Ledger()
         self._last_input = 0
-        self.why = ""
-        """The last verdict in words; empty if there was none."""
 
     @property
     def spent(self) -> Spent:
@@ -176,29 +158,30 @@ class BudgetGuard:
     def notify(self, event: Event, frame: Frame | None = None) -> None:
         """Add up what an event took."""
         if isinstance(event, Started):
-            self._own, self._last_input, self.why = Ledger(), 0, ""
+            self._own, self._last_input = Ledger(), 0
         elif isinstance(event, Thought):
             # A repair turn reads the prompt again, so its input is the sum of both.
-            self._last_input = event.usage.input_tokens // max(1, event.requests)
-            cost = 0.0 if _is_free(event) else event.cost_usd
+            reply = event.reply
+            self._last_input = reply.usage.input_tokens // max(1, reply.requests)
+            cost = 0.0 if _is_free(reply) else reply.cost_usd
             for ledger in (self._own, self._run):
-                ledger.spend(event.usage, cost, seconds=event.model_s)
+                ledger.spend(reply.usage, cost, seconds=reply.seconds)
         elif isinstance(event, Acted):
             for ledger in (self._own, self._run):
                 ledger.pass_time(event.world_s)
 
-    def verdict(self) -> TerminationReason | None:
+    def stop(self) -> Stop | None:
         """`BUDGET` or `RUN_BUDGET` if another call does not fit."""
         if why := self._own.exceeded(self._budget, self._last_input):
-            self.why = f"The budget of this episode is used up: {why}."
-            return TerminationReason.BUDGET
+            return Stop(TerminationReason.BUDGET, f"The budget of this episode is used up: {why}.")
         if why := self._run.exceeded(self._run_budget, self._last_input):
-            self.why = f"The budget of the whole run is used up: {why}."
-            return TerminationReason.RUN_BUDGET
+            return Stop(
+                TerminationReason.RUN_BUDGET, f"The budget of the whole run is used up: {why}."
+            )
         return None
 
 
-def _is_free(thought: Thought) -> bool:
+def _is_free(reply: Reply) -> bool:
     """Whether no provider was asked: no wire, and no tokens that one has counted."""
-    counted = thought.usage != Usage() and not thought.usage.estimated
-    return thought.cost_usd is None and thought.rung is None and not counted
+    counted = reply.usage != Usage() and not reply.usage.estimated
+    return reply.cost_usd is None and reply.rung is None and not counted

@@ -5,9 +5,9 @@ from __future__ import annotations
 from adamo_vh.action import Feedback, Pick, action_name, parse
 from adamo_vh.cognition.profile import SWITCHES, Profile
 from adamo_vh.cognition.prompts import render
-from adamo_vh.cognition.turns import FINISH, Finish
+from adamo_vh.cognition.turns import Finish
 from adamo_vh.errors import InvalidActionError
-from adamo_vh.record.turn import Turn, Wish
+from adamo_vh.record.turn import FINISH, Turn, Wish
 
 
 class Doubts:

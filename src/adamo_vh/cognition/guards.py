@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections import Counter, deque
-from collections.abc import Sequence
+from collections import Counter
 from typing import Protocol
 
 from adamo_vh.observation import Frame
-from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.trajectory import Acted, Ended, Event, Started, Thought
+from adamo_vh.record.termination import Stop, TerminationReason
+from adamo_vh.record.trajectory import Acted, Event, Started, Thought
 
 
 class Guard(Protocol):
@@ -19,13 +18,8 @@ class Guard(Protocol):
         """Take note of an event."""
         ...
 
-    def verdict(self) -> TerminationReason | None:
-        """The reason to stop now, if there is one."""
-        ...
-
-    @property
-    def why(self) -> str:
-        """The last verdict in words; empty if there was none."""
+    def stop(self) -> Stop | None:
+        """Why to stop now; None to go on."""
         ...
 
 
@@ -39,7 +33,6 @@ class LoopGuard:
 
     def __init__(self, max_repeats: int = 4) -> None:
         """Set how often the same may happen before it is a loop; 0 never stops."""
-        self.why = ""
         self._max_repeats = max_repeats
         self._seen: Counter[str] = Counter()
         self._idle = 0
@@ -49,23 +42,22 @@ class LoopGuard:
         if isinstance(event, Started):
             self._seen.clear()
             self._idle = 0
-        if isinstance(event, Thought) and not event.unreadable:
+        if isinstance(event, Thought) and not event.reply.unreadable:
             self._idle += 1
         if isinstance(event, Acted):
             self._idle = 0
             arguments = json.dumps(event.arguments, sort_keys=True, default=str)
             self._seen[f"{event.name} {arguments} {event.state_hash}"] += 1
 
-    def verdict(self) -> TerminationReason | None:
+    def stop(self) -> Stop | None:
         """`LOOP` if one of them came too often."""
         call, count = max(self._seen.items(), key=lambda item: item[1], default=("", 0))
         if not self._max_repeats or max(count, self._idle) < self._max_repeats:
             return None
-        what = call.rpartition(" ")[0]
-        self.why = f"{what} led to the same state {count} times."
+        why = f"{call.rpartition(' ')[0]} led to the same state {count} times."
         if count < self._max_repeats:
-            self.why = f"{self._idle} replies in a row led to no action."
-        return TerminationReason.LOOP
+            why = f"{self._idle} replies in a row led to no action."
+        return Stop(TerminationReason.LOOP, why)
 
 
 class ProtocolGuard:
@@ -73,7 +65,6 @@ class ProtocolGuard:
 
     def __init__(self, max_unreadable: int = 3) -> None:
         """Set how many unreadable replies in a row are too many."""
-        self.why = ""
         self._max_unreadable = max_unreadable
         self._in_a_row = 0
 
@@ -82,43 +73,11 @@ class ProtocolGuard:
         if isinstance(event, Started):
             self._in_a_row = 0
         if isinstance(event, Thought):
-            self._in_a_row = self._in_a_row + 1 if event.unreadable else 0
+            self._in_a_row = self._in_a_row + 1 if event.reply.unreadable else 0
 
-    def verdict(self) -> TerminationReason | None:
+    def stop(self) -> Stop | None:
         """`PROTOCOL` if there were too many."""
         if self._in_a_row < self._max_unreadable:
             return None
-        self.why = f"{self._in_a_row} replies in a row could not be read."
-        return TerminationReason.PROTOCOL
-
-
-class AsRecorded:
-    """Guards of an agent that carries out again what is on record.
-
-    It ends as it did then, whatever stopped it: a clock, a budget or a provider that failed. The
-    guards hear everything, and have a say when the record is used up.
-    """
-
-    def __init__(self, recorded: Sequence[Event], guards: Sequence[Guard]) -> None:
-        """Put a record before some guards."""
-        self.why = ""
-        self._ahead = deque(recorded)
-        self._guards = guards
-
-    def notify(self, event: Event, frame: Frame | None = None) -> None:
-        """Go on in the record."""
-        if self._ahead:
-            self._ahead.popleft()
-        for guard in self._guards:
-            guard.notify(event, frame)
-
-    def verdict(self) -> TerminationReason | None:
-        """The recorded end, if it stands here, or a reason of the guards."""
-        if self._ahead:
-            ended = self._ahead[0]
-            return ended.reason if isinstance(ended, Ended) else None
-        for guard in self._guards:
-            if (reason := guard.verdict()) is not None:
-                self.why = guard.why
-                return reason
-        return None
+        why = f"{self._in_a_row} replies in a row could not be read."
+        return Stop(TerminationReason.PROTOCOL, why)

@@ -8,9 +8,8 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field
 
-from adamo_vh.action import ToolSchema, action_name, tool_schema
+from adamo_vh.action import ToolSchema, tool_schema
 from adamo_vh.cognition.profile import Profile
-from adamo_vh.inference.messages import ToolCall
 from adamo_vh.inference.model import Reply
 from adamo_vh.record.turn import CONFIDENCE, NOTE, Turn, Wish
 
@@ -39,9 +38,6 @@ class Finish:
     verified: Annotated[str, Field(description="What you have verified, and from what.")]
     unseen: Annotated[str, Field(description="What you have not looked at or are not sure of.")]
     answer: Annotated[str, Field(description="A short sentence for the user.")]
-
-
-FINISH = action_name(Finish)
 
 
 def offered(actions: Sequence[type], profile: Profile) -> list[ToolSchema]:
@@ -75,18 +71,6 @@ def _with_note(schema: ToolSchema) -> ToolSchema:
 
 def read_turn(reply: Reply, profile: Profile) -> Turn:
     """Read a reply."""
-    wishes = tuple(_wish(call, profile) for call in reply.message.calls)
-    return Turn(reply.message, wishes, reply.unreadable, reply.ending)
-
-
-def _wish(call: ToolCall, profile: Profile) -> Wish:
-    ends = profile.finish_check and call.name == FINISH
-    if call.arguments is None or not profile.note_argument:
-        return Wish(call, call.arguments, is_finish=ends)
-    own = {key: value for key, value in call.arguments.items() if key not in _NOTE_FIELDS}
-    note, confidence = call.arguments.get(NOTE), call.arguments.get(CONFIDENCE)
-    sure = None
-    if isinstance(confidence, int | float) and not isinstance(confidence, bool):
-        # Also keeps a number that is too large for a float out.
-        sure = float(min(max(confidence, 0), 1))
-    return Wish(call, own, note if isinstance(note, str) else "", sure, ends)
+    noted, can_finish = profile.note_argument, profile.finish_check
+    calls = reply.message.calls
+    return Turn(reply, tuple(Wish.of(c, noted=noted, can_finish=can_finish) for c in calls))

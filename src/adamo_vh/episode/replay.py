@@ -6,9 +6,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from adamo_vh.action_server import ActionServer, execute_call
+from adamo_vh.engine import World
 from adamo_vh.errors import RecordError
 from adamo_vh.observation import Frame
-from adamo_vh.record.trajectory import Acted, Event, Observed, Started, Trajectory, frame_name
+from adamo_vh.record.trajectory import (
+    Acted,
+    Event,
+    Happened,
+    Observed,
+    Started,
+    Trajectory,
+    frame_name,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,11 +32,14 @@ class ReplayReport:
     """Frames with other bytes: possible on another machine, no error there."""
 
 
-def replay(server: ActionServer, recorded: Trajectory, start: int = 0) -> ReplayReport:
+def replay(
+    server: ActionServer, world: World, recorded: Trajectory, start: int = 0
+) -> ReplayReport:
     """Replay a trajectory.
 
     Args:
         server: Of the same scene and settings, just reset.
+        world: Behind it; for what happened in it that its body did not do.
         recorded: What happened.
         start: Begin after this many steps, from the state that was saved there.
 
@@ -38,8 +50,8 @@ def replay(server: ActionServer, recorded: Trajectory, start: int = 0) -> Replay
     if not 0 <= start <= len(acts):
         raise RecordError(f"step {start}: the episode has steps 0 to {len(acts)}.")
     began = next((e for e in recorded.events if isinstance(e, Started)), None)
-    if began is None:
-        raise RecordError("The episode has no beginning.")
+    if began is None or not began.saved:
+        raise RecordError("The episode broke before its first view; there is nothing to replay.")
     now = server.load(acts[start - 1].saved if start else began.saved)
     mismatches, frames_differ = [], 0
     before = acts[start - 1].state_hash if start else began.state_hash
@@ -55,6 +67,13 @@ def replay(server: ActionServer, recorded: Trajectory, start: int = 0) -> Replay
                     f"step {event.step}: {event.name} led to state {result.state_hash[:12]}, "
                     f"recorded {event.state_hash[:12]}"
                 )
+        if isinstance(event, Happened):
+            world.apply(event.event)
+            if (digest := world.state().hash()) != event.state_hash:
+                mismatches.append(
+                    f"after step {event.step}: {event.event.type} led to state {digest[:12]}, "
+                    f"recorded {event.state_hash[:12]}"
+                )
         if isinstance(event, Observed):
             # A view that no action brought was asked for: at the start, or to see what changed.
             seen = frame or server.observe().observation.frame
@@ -65,9 +84,10 @@ def replay(server: ActionServer, recorded: Trajectory, start: int = 0) -> Replay
 
 def _events_after(recorded: Trajectory, start: int) -> Iterator[Event]:
     """The events after a number of actions; the views that followed the last of them are passed."""
-    count = 0
+    count, has_begun = 0, False
     for event in recorded.events:
-        if isinstance(event, Acted):
-            count += 1
-        if count > start or start == 0:
+        count += isinstance(event, Acted)
+        has_begun = has_begun or isinstance(event, Started)
+        happened_since = isinstance(event, Happened) and has_begun and count == start
+        if count > start or happened_since or (start == 0 and has_begun):
             yield event

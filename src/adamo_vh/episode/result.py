@@ -2,75 +2,34 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from adamo_vh.benchmark.checkers import ConditionResult, score
-from adamo_vh.benchmark.tasks import task
-from adamo_vh.cognition.budget import Budget
-from adamo_vh.cognition.profile import PAPER, Profile
+from adamo_vh.benchmark.checkers import ConditionResult, Score, score
+from adamo_vh.benchmark.tasks import Task
+from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.engine import WorldState, supporting_object
-from adamo_vh.errors import ConfigError, FileError, RecordError
+from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.errors import FileError, RecordError
 from adamo_vh.files import read_text, write_whole
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.model import ModelKind, Sampling, Usage
+from adamo_vh.inference.model import ModelKind, Usage
 from adamo_vh.inference.remote.capabilities import Capabilities
-from adamo_vh.perception import Labeling, TextForm
-from adamo_vh.record.run_folder import MANIFEST, RESULT, check_begun
-from adamo_vh.record.termination import Limits, TerminationReason
+from adamo_vh.perception import Labeling
+from adamo_vh.record.old_format import OLD_FORMAT, upgraded_result
+from adamo_vh.record.run_folder import FORMAT, MANIFEST, RESULT, check_begun, read_head
+from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Thought, Trajectory
 
-FORMAT = 1
 _MOST_BYTES = 50_000_000
 _T = TypeVar("_T")
-
-
-@dataclass(frozen=True, slots=True)
-class EpisodeConfig:
-    """Everything that decides how an episode goes; the defaults are the paper's baseline."""
-
-    instruction: str
-    """What the agent is told."""
-    task: str | None = None
-    """Id of the benchmark task that the instruction comes from; decides the checker."""
-    scene: str = "s1"
-    """Built-in scene or path of a scene file."""
-    figure: str = "mara"
-    """Who the virtual human is; seen in frames where the body is in view."""
-    labeling: Labeling = Labeling.SEM
-    model: str = "baseline"
-    """Model URI."""
-    tool_calls: str = "auto"
-    """How a remote model is asked for its calls: "auto", "native", "schema" or "react"."""
-    profile: Profile = PAPER
-    seed: int = 0
-    k: int = 50
-    """Steps in the short-term memory."""
-    grid: int = 6
-    """Reference points along each side of the frame."""
-    resolution: tuple[int, int] = (1920, 1080)
-    """Width and height of the frames in pixels."""
-    text_form: TextForm = TextForm.FULL
-    sampling: Sampling = field(default=Sampling())
-    limits: Limits = field(default=Limits())
-    budget: Budget = field(default=Budget())
-
-    def __post_init__(self) -> None:
-        if not self.instruction.strip():
-            raise ConfigError("The instruction is empty; say what to do, or name a --task.")
-        width, height = self.resolution
-        if not (64 <= width <= 7680 and 64 <= height <= 4320):
-            raise ConfigError(f"resolution {width}x{height}: use 64x64 up to 7680x4320.")
-        if not 0 <= self.grid <= 20:
-            raise ConfigError(f"grid is {self.grid}: use 0 to 20 reference points a side.")
-        if self.k < 1:
-            raise ConfigError(f"k is {self.k}: the memory keeps at least 1 step.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +45,8 @@ class Manifest:
     initial: WorldState
     capabilities: Capabilities | None = None
     """What the probe of a remote model found; None if none was made."""
+    engine: str = ""
+    """Class of the engine, if it was handed in and no scene's name brings it back."""
     format: int = FORMAT
 
 
@@ -114,12 +75,8 @@ class EpisodeResult:
     model: str
     model_kind: ModelKind
     seed: int
-    completion: float | None
-    """Fraction of satisfied conditions; None without a task, or if the episode broke."""
-    strict: float | None
-    """1 or 0; None like `completion`."""
-    conditions: tuple[ConditionResult, ...]
-    violations: tuple[str, ...]
+    score: Score | None
+    """None without a task, or if the episode broke."""
     termination: TerminationReason
     why: str
     """Why it was stopped, in words, where there is more to say than the reason."""
@@ -153,6 +110,26 @@ class EpisodeResult:
     final: WorldState
 
     @property
+    def completion(self) -> float | None:
+        """Fraction of satisfied conditions; None if there is no score."""
+        return None if self.score is None else self.score.completion
+
+    @property
+    def strict(self) -> float | None:
+        """1 or 0; None if there is no score."""
+        return None if self.score is None else self.score.strict
+
+    @property
+    def conditions(self) -> tuple[ConditionResult, ...]:
+        """Each condition of the task, and whether it holds; none without a score."""
+        return () if self.score is None else self.score.conditions
+
+    @property
+    def violations(self) -> tuple[str, ...]:
+        """What speaks against a strict success; none without a score."""
+        return () if self.score is None else self.score.violations
+
+    @property
     def tokens(self) -> int:
         """Input plus output of all model calls."""
         return self.usage.total_tokens
@@ -179,12 +156,24 @@ class EpisodeResult:
 
 
 def summarise(
-    manifest: Manifest, trajectory: Trajectory, final: WorldState, run: Path | None
+    manifest: Manifest,
+    trajectory: Trajectory,
+    final: WorldState,
+    run: Path | None,
+    task: Task | None = None,
 ) -> EpisodeResult:
     """Score and count an episode that has ended: a pure function over its records.
 
+    Args:
+        manifest: How it was set up.
+        trajectory: What happened.
+        final: The world at its end.
+        run: The run folder.
+        task: What was asked for, if the task is no built-in one.
+
     Raises:
         RecordError: The trajectory has no end.
+        ConfigError: The task is no built-in one, and was not given.
     """
     ended = trajectory.ended
     if ended is None:
@@ -192,7 +181,9 @@ def summarise(
     config = manifest.config
     scored = None
     if config.task is not None and ended.reason.is_scored:
-        scored = score(manifest.initial, final, task(config.task))
+        scored = score(manifest.initial, final, task or find_task(config.task))
+    thoughts = trajectory.thoughts
+    replies = [thought.reply for thought in thoughts]
     kinds = Counter(act.name for act in trajectory.acts)
     stops = [manifest.initial.body.position, *(act.agent.position for act in trajectory.acts)]
     return EpisodeResult(
@@ -204,23 +195,20 @@ def summarise(
         model=manifest.model_name,
         model_kind=manifest.model_kind,
         seed=config.seed,
-        completion=scored.completion if scored else None,
-        strict=scored.strict if scored else None,
-        conditions=scored.conditions if scored else (),
-        violations=scored.violations if scored else (),
+        score=scored,
         termination=ended.reason,
         why=ended.why,
         answer=ended.answer,
         steps=ended.steps,
-        model_calls=len(trajectory.thoughts),
+        model_calls=len(replies),
         calls=dict(sorted(kinds.items())),
-        missing_notes=sum(bool(t.calls) and not t.reasoning.strip() for t in trajectory.thoughts),
-        unreadable=sum(t.reply.ending.is_failure for t in trajectory.thoughts),
-        requests=sum(t.requests for t in trajectory.thoughts),
-        usage=sum((t.usage for t in trajectory.thoughts), Usage()),
-        cost_usd=total_cost(trajectory.thoughts),
-        rungs=tuple(sorted({str(t.rung) for t in trajectory.thoughts if t.rung is not None})),
-        model_s=sum(t.model_s for t in trajectory.thoughts),
+        missing_notes=sum(bool(t.turn.wishes) and not t.turn.note for t in thoughts),
+        unreadable=sum(reply.ending.is_failure for reply in replies),
+        requests=sum(reply.requests for reply in replies),
+        usage=sum((reply.usage for reply in replies), Usage()),
+        cost_usd=total_cost(thoughts),
+        rungs=tuple(sorted({str(reply.rung) for reply in replies if reply.rung is not None})),
+        model_s=sum(reply.seconds for reply in replies),
         world_s=sum(act.world_s for act in trajectory.acts),
         walked_m=sum(act.feedback.walked_m for act in trajectory.acts),
         direct_m=sum(a.horizontal_distance(b) for a, b in pairwise(stops)),
@@ -232,7 +220,8 @@ def summarise(
 
 def total_cost(thoughts: Sequence[Thought]) -> float | None:
     """What all answers cost; None if any price is unknown, because that is not 0."""
-    known = [thought.cost_usd for thought in thoughts if thought.cost_usd is not None]
+    costs = [thought.reply.cost_usd for thought in thoughts]
+    known = [cost for cost in costs if cost is not None]
     return sum(known) if known and len(known) == len(thoughts) else None
 
 
@@ -254,14 +243,13 @@ def read_manifest(folder: Path) -> Manifest:
         RecordError: The folder holds no run, or one of another version.
     """
     check_begun(folder)
-    manifest = _read(folder / MANIFEST, Manifest)
-    if manifest.format != FORMAT:
+    form = read_head(folder).get("format", FORMAT)
+    if form not in (OLD_FORMAT, FORMAT):
         raise RecordError(
-            f"{folder / MANIFEST}: the record has format {manifest.format}, and this version of "
-            f"ADAMO reads format {FORMAT}; use the version that wrote it "
-            f"({manifest.versions.get('adamo-vh', 'unknown')})."
+            f"{folder / MANIFEST}: the record has format {form}, and this version of ADAMO reads "
+            f"formats {OLD_FORMAT} and {FORMAT}; use the version that wrote it."
         )
-    return manifest
+    return _read(folder / MANIFEST, Manifest)
 
 
 def read_result(folder: Path) -> EpisodeResult | None:
@@ -271,15 +259,22 @@ def read_result(folder: Path) -> EpisodeResult | None:
         RecordError: The file is damaged.
     """
     path = folder / RESULT
-    return _read(path, EpisodeResult) if path.exists() else None
+    if not path.exists():
+        return None
+    return _read(path, EpisodeResult, is_old=read_head(folder).get("format") == OLD_FORMAT)
 
 
-def _read(path: Path, record_type: type[_T]) -> _T:
+def _read(path: Path, record_type: type[_T], *, is_old: bool = False) -> _T:
     try:
-        return TypeAdapter(record_type).validate_json(read_text(path, max_bytes=_MOST_BYTES))
+        text = read_text(path, max_bytes=_MOST_BYTES)
+        if is_old:
+            text = json.dumps(upgraded_result(json.loads(text)))
+        return TypeAdapter(record_type).validate_json(text)
     except FileError as error:
         raise RecordError(str(error)) from None
-    except ValidationError as error:
+    except (ValueError, LookupError, RecursionError) as error:
+        if not isinstance(error, ValidationError):
+            raise RecordError(f"{path} is damaged; written by another version?") from None
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
         raise RecordError(

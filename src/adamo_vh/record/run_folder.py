@@ -15,7 +15,7 @@ from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 from weakref import WeakSet
 
 from adamo_vh.errors import FileError, FolderInUseError, RecordError
@@ -26,6 +26,10 @@ EVENTS = "events.jsonl"
 FRAMES = "frames"
 RESULT = "result.json"
 LOCK = "run.lock"
+SCENE, SCRIPT = "scene.toml", "script.json"
+"""Own files that the episode rests on."""
+FORMAT = 2
+"""Of the files; older ones can be read, not continued."""
 
 
 class FolderLock:
@@ -145,6 +149,15 @@ def check_begun(folder: Path) -> None:
         f"{folder} was left before anything was recorded; delete it and run again, or choose "
         "another --out folder."
     )
+
+
+def read_head(folder: Path) -> dict[str, Any]:
+    """The manifest as plain data, if it can be read; else nothing."""
+    try:
+        head = json.loads((folder / MANIFEST).read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return head if isinstance(head, dict) else {}
 
 
 def reserve(parent: Path, name: str) -> Path:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from enum import StrEnum
+
+from adamo_vh.errors import ConfigError
 
 
 class TerminationReason(StrEnum):
@@ -36,6 +39,17 @@ class TerminationReason(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Stop:
+    """A decision to end now."""
+
+    reason: TerminationReason
+    why: str = ""
+    """In words, where there is more to say than the reason."""
+    answer: str = ""
+    """What the agent said at the end; the fault, if the episode broke."""
+
+
+@dataclass(frozen=True, slots=True)
 class Limits:
     """Caps on an episode; the time cap is the paper's (Sec. 4.2)."""
 
@@ -48,13 +62,31 @@ class Limits:
     max_unreadable: int = 3
     """Replies in a row that are neither a valid call nor an answer."""
 
-    def exceeded(self, steps: int, seconds: float) -> TerminationReason | None:
-        """The reason to stop now, if there is one."""
+    def __post_init__(self) -> None:
+        """Refuse what is no cap."""
+        for name in ("max_steps", "max_unreadable"):
+            if not _is_whole(getattr(self, name), least=1):
+                raise ConfigError(f"{name} is {getattr(self, name)!r}: use a whole number from 1.")
+        if not _is_whole(self.max_repeats, least=0):
+            raise ConfigError(f"max_repeats is {self.max_repeats!r}: use a whole number from 0.")
+        if not (_is_number(self.max_seconds) and self.max_seconds >= 0):
+            raise ConfigError(f"max_seconds is {self.max_seconds!r}: use a number from 0.")
+
+    def exceeded(self, steps: int, seconds: float) -> Stop | None:
+        """Why to stop now, if a cap is reached."""
         if steps >= self.max_steps:
-            return TerminationReason.STEP_LIMIT
+            return Stop(TerminationReason.STEP_LIMIT)
         if seconds >= self.max_seconds:
-            return TerminationReason.TIME_LIMIT
+            return Stop(TerminationReason.TIME_LIMIT)
         return None
+
+
+def _is_whole(value: object, *, least: int) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= least
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 class Stopwatch:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, Protocol
@@ -12,14 +13,14 @@ from typing import Annotated, Any, Literal, Protocol
 from pydantic import Field, TypeAdapter, ValidationError
 
 from adamo_vh.action import Feedback
-from adamo_vh.action_server import ActionResult
+from adamo_vh.engine import WorldEvent
 from adamo_vh.errors import RecordError
-from adamo_vh.inference.messages import AIMessage, Message, ToolCall
-from adamo_vh.inference.model import Ending, Reply, Rung, Usage
+from adamo_vh.inference.model import Reply
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
-from adamo_vh.record.run_folder import EVENTS
+from adamo_vh.record.old_format import OLD_FORMAT, upgraded_event
+from adamo_vh.record.run_folder import EVENTS, read_head
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.turn import reasoning
+from adamo_vh.record.turn import Turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,48 +59,14 @@ class Thought:
     """The symbolic state that the model read."""
     messages: int
     """How many messages the prompt had."""
-    note: str
-    """The text of the reply; see also `reasoning`."""
-    calls: tuple[ToolCall, ...]
-    usage: Usage
-    model_s: float
-    waited_s: float
-    requests: int = 1
-    cost_usd: float | None = None
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    """The decoding settings in effect."""
-    rung: Rung | None = None
-    unreadable: str = ""
-    """What is wrong with the reply; see `Reply.unreadable`."""
-    kept: str = ""
-    """What the provider wants back with this answer; see `AIMessage.kept`."""
-    ending: Ending | None = None
-    """What the reply is; None in records of earlier versions."""
-    finish_reason: str = ""
-    """Why the reply ended, in the provider's own word."""
+    turn: Turn
+    """The reply, and what each of its calls wishes."""
     type: Literal["thought"] = "thought"
 
     @property
     def reply(self) -> Reply:
         """What the model replied, as it came."""
-        return Reply(
-            AIMessage(self.note, self.calls, self.kept),
-            self.usage,
-            self.model_s,
-            self.waited_s,
-            self.requests,
-            self.cost_usd,
-            self.settings,
-            self.rung,
-            self.unreadable,
-            **({} if self.ending is None else {"ending": self.ending}),
-            finish_reason=self.finish_reason,
-        )
-
-    @property
-    def reasoning(self) -> str:
-        """The reasoning note: the text, or what the calls carry as their note."""
-        return reasoning(self.note, self.calls)
+        return self.turn.reply
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +74,8 @@ class Acted:
     """A tool call was carried out, or refused."""
 
     step: int
+    call_id: str
+    """Of the call in the turn that it was done for; a doubted Pick shows its object instead."""
     name: str
     arguments: Mapping[str, Any] | None
     feedback: Feedback
@@ -150,12 +119,23 @@ class LeftOut:
     """A tool call was not executed; the calls of a turn that are left out are its last ones."""
 
     step: int
+    call_id: str
     name: str
     why: str
     type: Literal["left_out"] = "left_out"
 
 
-Event = Started | Observed | Thought | Acted | LeftOut | Shown | Ended
+@dataclass(frozen=True, slots=True)
+class Happened:
+    """Something happened in the world that no body in it did."""
+
+    step: int
+    event: Annotated[WorldEvent, Field(discriminator="type")]
+    state_hash: str
+    type: Literal["happened"] = "happened"
+
+
+Event = Started | Observed | Thought | Acted | LeftOut | Shown | Happened | Ended
 
 
 class Observer(Protocol):
@@ -177,48 +157,6 @@ def observed(step: int, view: Observation) -> Observed:
         view.objects,
         view.points,
         view.agent,
-    )
-
-
-def thought(step: int, state_text: str, messages: Sequence[Message], reply: Reply) -> Thought:
-    """The event of a model's reply to a prompt."""
-    return Thought(
-        step,
-        state_text,
-        len(messages),
-        reply.message.text,
-        reply.message.calls,
-        reply.usage,
-        reply.seconds,
-        reply.waited_s,
-        reply.requests,
-        reply.cost_usd,
-        reply.settings,
-        reply.rung,
-        reply.unreadable,
-        reply.message.kept,
-        reply.ending,
-        reply.finish_reason,
-    )
-
-
-def acted(
-    step: int,
-    name: str,
-    arguments: Mapping[str, Any] | None,
-    result: ActionResult,
-    world_s: float,
-) -> Acted:
-    """The event of an executed or refused call."""
-    return Acted(
-        step,
-        name,
-        arguments,
-        result.feedback,
-        result.agent,
-        result.state_hash,
-        result.saved,
-        world_s,
     )
 
 
@@ -261,11 +199,6 @@ class Trajectory:
         return [e for e in self.events if isinstance(e, Acted)]
 
     @property
-    def views(self) -> list[Observed]:
-        """Every view."""
-        return [e for e in self.events if isinstance(e, Observed)]
-
-    @property
     def instructions(self) -> list[str]:
         """Everything the user said, in order; one, unless it was a conversation."""
         return [e.instruction for e in self.events if isinstance(e, Started)]
@@ -286,13 +219,16 @@ def read_trajectory(folder: Path) -> Trajectory:
     path = folder / EVENTS
     if not path.is_file():
         raise RecordError(f"{folder} holds no episode: {EVENTS} is missing.")
+    head = read_head(folder)
+    is_old = head.get("format") == OLD_FORMAT
     lines = path.read_bytes().split(b"\n")
     events: list[Event] = []
     for number, line in enumerate(lines[:-1], start=1):
         try:
-            events.append(codec().validate_json(line))
-        except ValidationError as error:
-            problem = error.errors()[0]["msg"]
+            text = json.dumps(upgraded_event(line, head, events)) if is_old else line
+            events.append(codec().validate_json(text))
+        except (ValueError, TypeError, LookupError) as error:
+            problem = error.errors()[0]["msg"] if isinstance(error, ValidationError) else str(error)
             raise RecordError(
                 f"{path}, line {number} is damaged: {problem}; written by another version?"
             ) from None

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from adamo_vh.inference.messages import AIMessage, ToolCall
-from adamo_vh.inference.model import Ending
-from adamo_vh.record.termination import TerminationReason
+from adamo_vh.inference.model import Ending, Reply
+from adamo_vh.record.termination import Stop, TerminationReason
 
 NOTE = "note"
 CONFIDENCE = "confidence"
+FINISH = "Finish"
+"""The call that ends an episode, where it is offered."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +29,26 @@ class Wish:
     is_finish: bool = False
     """Whether it asks to end the episode, where the profile offers that."""
 
+    @classmethod
+    def of(cls, call: ToolCall, *, noted: bool, can_finish: bool) -> Wish:
+        """Read a call.
+
+        Args:
+            call: As the model made it.
+            noted: Whether calls carry a note and a confidence.
+            can_finish: Whether a call of Finish ends the episode.
+        """
+        ends = can_finish and call.name == FINISH
+        if call.arguments is None or not noted:
+            return cls(call, call.arguments, is_finish=ends)
+        own = {k: v for k, v in call.arguments.items() if k not in (NOTE, CONFIDENCE)}
+        note, confidence = call.arguments.get(NOTE), call.arguments.get(CONFIDENCE)
+        sure = None
+        if isinstance(confidence, int | float) and not isinstance(confidence, bool):
+            # Also keeps a number that is too large for a float out.
+            sure = float(min(max(confidence, 0), 1))
+        return cls(call, own, note if isinstance(note, str) else "", sure, ends)
+
     @property
     def answer(self) -> str:
         """What a `Finish` tells the user."""
@@ -37,12 +59,30 @@ class Wish:
 class Turn:
     """What a model said in one turn."""
 
-    message: AIMessage
+    reply: Reply
     wishes: tuple[Wish, ...] = ()
-    unreadable: str = ""
-    """What is wrong with it; see `Reply.unreadable`. Empty if it is a call or an answer."""
-    ending: Ending = Ending.ANSWER
-    """What the reply is."""
+    """One for each call of the reply."""
+
+    @property
+    def message(self) -> AIMessage:
+        """What goes back into the conversation."""
+        return self.reply.message
+
+    @property
+    def unreadable(self) -> str:
+        """What is wrong with it; see `Reply.unreadable`. Empty if it is a call or an answer."""
+        return self.reply.unreadable
+
+    @property
+    def ending(self) -> Ending:
+        """What the reply is."""
+        return self.reply.ending
+
+    @property
+    def note(self) -> str:
+        """The reasoning note: the text, or else what the calls carry as theirs."""
+        text = self.message.text.strip()
+        return text or "\n".join(dict.fromkeys(w.note.strip() for w in self.wishes if w.note))
 
     @property
     def is_empty(self) -> bool:
@@ -73,20 +113,12 @@ class Turn:
         return self.message.text if self.finish is None else self.finish.answer
 
     @property
-    def reason(self) -> TerminationReason:
-        """Why it ends the episode."""
-        empty = not self.answer.strip()
-        return TerminationReason.EMPTY_REPLY if empty else TerminationReason.ANSWERED
+    def stop(self) -> Stop:
+        """The end that it brings, if it ends the episode."""
+        said = TerminationReason.ANSWERED if self.answer.strip() else TerminationReason.EMPTY_REPLY
+        return Stop(said, answer=self.answer)
 
     @property
     def finish(self) -> Wish | None:
         """The wish to end, if it is the only one."""
         return self.wishes[0] if len(self.wishes) == 1 and self.wishes[0].is_finish else None
-
-
-def reasoning(text: str, calls: Sequence[ToolCall]) -> str:
-    """The reasoning note of a reply: its text, or else what its calls carry as a note."""
-    if text.strip():
-        return text
-    notes = [(call.arguments or {}).get(NOTE) for call in calls]
-    return "\n".join(note for note in notes if isinstance(note, str) and note.strip())

@@ -18,8 +18,8 @@ from typing import TypeVar
 from markupsafe import Markup
 
 from adamo_vh.cognition.budget import Budget
+from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import (
-    EpisodeConfig,
     EpisodeResult,
     Manifest,
     read_manifest,
@@ -125,7 +125,7 @@ def render_page(
         A complete HTML document without any reference to the outside.
     """
     config, initial = manifest.config, manifest.initial
-    steps = turns(trajectory, config.profile)
+    steps = turns(trajectory)
     asked = exchanges(steps, config.instruction, initial, config.labeling)
     ended = trajectory.ended or (_ended(result) if result and not steps else None)
     style, script = template_text("episode.css"), template_text("episode.js")

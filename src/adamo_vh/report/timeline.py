@@ -12,8 +12,6 @@ from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from typing import Any
 
-from adamo_vh.cognition.profile import PAPER, Profile
-from adamo_vh.cognition.turns import read_turn
 from adamo_vh.observation import AgentState
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import (
@@ -182,9 +180,8 @@ class _Draft:
 class _Timeline:
     """Gathers events into turns."""
 
-    def __init__(self, profile: Profile) -> None:
+    def __init__(self) -> None:
         self.turns: list[Turn] = []
-        self._profile = profile
         self._shown: dict[str, tuple[str, str]] = {}
         """By frame: the turn that shows it, and its name there."""
         self._draft: _Draft | None = None
@@ -253,7 +250,7 @@ class _Timeline:
                 self.turns[-1] = replace(self.turns[-1], ended=ended)
             return
         turn, thought = draft.turn, draft.turn.thought
-        wishes = read_turn(thought.reply, self._profile).wishes if thought else ()
+        wishes = thought.turn.wishes if thought else ()
         closing = wishes[0] if len(wishes) == 1 and wishes[0].is_finish else None
         deeds = () if closing and not draft.acts else self._deeds(draft, wishes)
         note = next((text for text in _notes(thought, wishes) if text), "")
@@ -270,7 +267,7 @@ class _Timeline:
 
     def _deeds(self, draft: _Draft, wishes: Sequence[Wish]) -> tuple[Deed, ...]:
         deeds: list[Deed] = []
-        unreadable = draft.turn.thought and draft.turn.thought.unreadable
+        unreadable = draft.turn.thought and draft.turn.thought.reply.unreadable
         unknown = "the answer could not be read" if unreadable else ""
         left_out = iter(draft.left_out)
         # Calls are executed from the first on, so what was executed stands for the first ones.
@@ -291,14 +288,9 @@ class _Timeline:
         return Picture(name, event, turn, source)
 
 
-def turns(trajectory: Trajectory, profile: Profile = PAPER) -> tuple[Turn, ...]:
-    """Arrange the events of an episode, also of one that was cut off, into turns.
-
-    Args:
-        trajectory: What happened.
-        profile: How the model was spoken to.
-    """
-    timeline = _Timeline(profile)
+def turns(trajectory: Trajectory) -> tuple[Turn, ...]:
+    """Arrange the events of an episode, also of one that was cut off, into turns."""
+    timeline = _Timeline()
     for event in trajectory.events:
         timeline.take(event)
     timeline.finish()
@@ -316,7 +308,7 @@ def _deed(wish: Wish | None, act: Acted | None) -> Deed:
 def _notes(thought: Thought | None, wishes: Sequence[Wish]) -> Iterator[str]:
     """The text of a reply, and the notes of its calls."""
     if thought:
-        yield thought.note.strip()
+        yield thought.reply.message.text.strip()
         yield from (wish.note.strip() for wish in wishes)
 
 
@@ -331,7 +323,7 @@ def _own_notes(note: str, deeds: Sequence[Deed]) -> Iterator[Deed]:
 def _tone(turn: Turn, ended: Ended | None, *, went_on: bool) -> str:
     if turn.thought is None and not turn.acts:
         return "view"
-    if turn.thought and turn.thought.unreadable:
+    if turn.thought and turn.thought.reply.unreadable:
         return "unreadable"
     if turn.acts:
         return next(deed.tone for deed in reversed(turn.deeds) if deed.act)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from adamo_vh.benchmark.tasks import task as find_task
+from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.forecast import Forecast, forecast
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
 from adamo_vh.cognition.turns import offered
 from adamo_vh.engine import World
-from adamo_vh.episode.result import EpisodeConfig
+from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.errors import ConfigError
+from adamo_vh.inference.cost.prices import cost_usd
 from adamo_vh.inference.cost.tokens import estimate_image, estimate_request, rule_for
-from adamo_vh.session.engines import instructions, open_server
+from adamo_vh.inference.model import Model, ModelKind, Usage
+from adamo_vh.inference.players.cassette import Cassette
+from adamo_vh.session.bodies import instructions, open_server
 
 USUAL_CALLS = 4.67
 """Model calls an episode: GPT-4o on S1 in the paper."""
@@ -55,3 +60,17 @@ def forecast_episodes(config: EpisodeConfig, engine: World, episodes: int = 1) -
         output_per_call=_OUTPUT_PER_CALL,
         episodes=episodes,
     )
+
+
+def check_price(uri: str, model: Model, budget: Budget) -> None:
+    """Make sure that a budget of money can be kept, before anything is paid.
+
+    Raises:
+        ConfigError: No price is known for the model.
+    """
+    is_paid = model.info.kind is ModelKind.VLM and not isinstance(model, Cassette)
+    if budget.usd is not None and is_paid and cost_usd(uri, Usage(1000, 1000)) is None:
+        raise ConfigError(
+            f"No price is known for {uri}, so that a budget of {budget.usd:g} US dollars cannot be "
+            "kept. Put the model into the price table (prices.toml), or cap tokens or calls."
+        )

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from adamo_vh.action import Outcome
-from adamo_vh.cognition.memory.short_term import Result, ShortTermMemory
+from adamo_vh.cognition.memory.protocol import Result
+from adamo_vh.cognition.memory.short_term import ShortTermMemory
 from adamo_vh.cognition.profile import PAPER, PROFILES, Profile, StateText
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Camera, Vec3

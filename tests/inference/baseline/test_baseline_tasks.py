@@ -13,7 +13,7 @@ from adamo_vh.inference.baseline import BaselineModel
 from adamo_vh.inference.messages import HumanMessage, Message, TextPart
 from adamo_vh.inference.model import Reply, Sampling
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.session.episode import run_episode
+from adamo_vh.session.runs import run_episode
 
 PROMPT = {task.id: task.prompt for task in TASKS}
 SEM = [f"T{n}" for n in range(1, 14)]

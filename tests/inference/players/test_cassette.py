@@ -297,7 +297,7 @@ def test_a_whole_episode_runs_again_from_its_cassette(
         ended.state_hash,
     )
     assert [act.state_hash for act in replayed.acts] == [act.state_hash for act in recorded.acts]
-    assert [turn.note for turn in replayed.thoughts] == [turn.note for turn in recorded.thoughts]
+    assert [t.turn.note for t in replayed.thoughts] == [t.turn.note for t in recorded.thoughts]
     assert len(cassette) == len(recorded.thoughts) > 2
     assert cassette.info.kind is ModelKind.RULE_BASED
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from adamo_vh.action import Outcome
+from adamo_vh.cognition.memory.protocol import Result
 from adamo_vh.cognition.profile import PAPER, Profile, StateText
 from adamo_vh.cognition.prompts import render
 from adamo_vh.errors import ConfigError
@@ -43,28 +43,7 @@ class Instruction:
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
-    """What came back for one call."""
-
-    call_id: str
-    name: str
-    text: str
-    agent: AgentState
-    outcome: Outcome | None = None
-    """How the action ended; None if it was not executed."""
-    view: Observation | None = None
-    pictures: tuple[Frame, ...] = ()
-    left_out: str = ""
-    """Why the call was not even looked at, e.g. because an earlier one ended the turn."""
-
-    @property
-    def went_as_planned(self) -> bool:
-        """Whether a plan may go on after it."""
-        return self.outcome is Outcome.DONE
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
+class Exchange:
     """What the model said, and what came back for each of its calls."""
 
     message: AIMessage
@@ -96,7 +75,7 @@ class ShortTermMemory:
         self._wording = Wording(form, self._profile.terse)
         self._pinned: list[Instruction] = []
         self._k = k
-        self._entries: list[Instruction | Step] = []
+        self._entries: list[Instruction | Exchange] = []
         self._view: Observation | None = None
         self._agent: AgentState | None = None
 
@@ -117,8 +96,8 @@ class ShortTermMemory:
 
     def add_step(self, message: AIMessage, *results: Result) -> None:
         """Remember what the model said and what came back."""
-        self._entries.append(Step(message, results))
-        steps = [i for i, entry in enumerate(self._entries) if isinstance(entry, Step)]
+        self._entries.append(Exchange(message, results))
+        steps = [i for i, entry in enumerate(self._entries) if isinstance(entry, Exchange)]
         if len(steps) > self._k:
             # With a step goes what was said before it, and the word that it was answered with.
             del self._entries[: steps[-self._k]]
@@ -145,7 +124,7 @@ class ShortTermMemory:
             prompt.append(HumanMessage((TextPart(self.state_text),)))
         return prompt
 
-    def _kept(self) -> list[Instruction | Step]:
+    def _kept(self) -> list[Instruction | Exchange]:
         """The entries of the prompt: the buffer, and the instructions that fell out of it."""
         buffer = self._entries
         fallen = [entry for entry in self._pinned if not any(entry is kept for kept in buffer)]
@@ -156,7 +135,7 @@ class _Writer:
     """Writes entries as messages, oldest first, for one prompt."""
 
     def __init__(
-        self, profile: Profile, wording: Wording, entries: Sequence[Instruction | Step]
+        self, profile: Profile, wording: Wording, entries: Sequence[Instruction | Exchange]
     ) -> None:
         self._profile = profile
         self._wording = wording
@@ -167,7 +146,7 @@ class _Writer:
         shown = [id(frame) for frame in _closeups(entries)]
         self._in_sight = {*views[-kept:], *shown[-kept:]}
 
-    def write(self, entry: Instruction | Step) -> Iterator[Message]:
+    def write(self, entry: Instruction | Exchange) -> Iterator[Message]:
         """The messages of an entry."""
         if isinstance(entry, Instruction):
             yield self._instruction(entry)
@@ -224,13 +203,13 @@ class _Writer:
         return "\n\n".join(part for part in parts if part)
 
 
-def _views(entries: Sequence[Instruction | Step]) -> Iterator[Observation]:
+def _views(entries: Sequence[Instruction | Exchange]) -> Iterator[Observation]:
     for entry in entries:
         parts = (entry,) if isinstance(entry, Instruction) else entry.results
         yield from (part.view for part in parts if part.view is not None)
 
 
-def _closeups(entries: Sequence[Instruction | Step]) -> Iterator[Frame]:
+def _closeups(entries: Sequence[Instruction | Exchange]) -> Iterator[Frame]:
     for entry in entries:
-        if isinstance(entry, Step):
+        if isinstance(entry, Exchange):
             yield from (frame for result in entry.results for frame in result.pictures)

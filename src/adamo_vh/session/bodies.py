@@ -1,0 +1,199 @@
+"""The body: an engine with a scene, the action server in front of it, and what both must offer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from typing import cast
+
+from adamo_vh.action import Code, action_name
+from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS, LocalActionServer, Tool
+from adamo_vh.benchmark.conditions import NEAR_M
+from adamo_vh.benchmark.tasks import Task
+from adamo_vh.benchmark.tasks import task as find_task
+from adamo_vh.cognition.instructions import system_prompt
+from adamo_vh.engine import World, acting_body
+from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.episode.result import Manifest
+from adamo_vh.errors import ConfigError, RecordError
+from adamo_vh.files import write_whole
+from adamo_vh.perception import PerceptionConfig
+from adamo_vh.record.run_folder import SCENE, SCRIPT
+from adamo_vh.record.trajectory import Trajectory
+
+ENGINES, TOOLS = "adamo_vh.engines", "adamo_vh.tools"
+"""Entry-point groups under which other packages offer theirs."""
+
+
+def create_engine(scene: str = "s1", figure: str = "mara") -> World:
+    """The built-in engine with a scene.
+
+    Args:
+        scene: Built-in scene or path of a scene file; or ``NAME:REST`` of an engine that another
+            package offers under the entry point NAME of ``adamo_vh.engines``: a function of REST
+            and the figure that gives a `World`.
+        figure: Who the virtual human is: mara, jonas, amina or ken.
+
+    Raises:
+        SceneError: The scene is unknown or wrong.
+        ConfigError: No figure has this name.
+    """
+    name, _, rest = scene.partition(":")
+    if (made := offered_by_others(ENGINES).get(name)) is not None:
+        return cast(World, made.load()(rest, figure))
+    from adamo_vh.runtime.builtin import BuiltinEngine
+
+    return BuiltinEngine(scene, figure)
+
+
+def offered_by_others(group: str) -> dict[str, EntryPoint]:
+    """What other packages offer under an entry-point group, by name."""
+    return {point.name: point for point in entry_points(group=group)}
+
+
+def opened(
+    stack: ExitStack,
+    config: EpisodeConfig,
+    engine: World | None,
+    recorded: tuple[Path, Manifest] | None = None,
+) -> World:
+    """The world of an episode, just reset.
+
+    Args:
+        stack: Closes what is made here.
+        config: Names the scene.
+        engine: What was handed in.
+        recorded: Run folder and manifest of an episode that is executed again.
+
+    Raises:
+        RecordError: It was recorded in an engine that only its maker can hand in.
+    """
+    if engine is not None:
+        acting_body(engine)
+        world = engine
+    else:
+        scene = config.scene
+        if recorded is not None:
+            folder, manifest = recorded
+            if manifest.engine:
+                raise RecordError(
+                    f"{folder} was recorded in an engine that was handed in ({manifest.engine}, "
+                    f"scene {config.scene!r}); hand it in again: engine=..."
+                )
+            if (folder / SCENE).is_file():
+                scene = str(folder / SCENE)
+        world = create_engine(scene, config.figure)
+        stack.callback(world.close)
+    world.reset(config.seed)
+    return world
+
+
+def as_said(config: EpisodeConfig, world: World) -> EpisodeConfig:
+    """The settings with scene and figure as an engine that was handed in tells them."""
+    scene = world.scene
+    name = scene.source if Path(scene.source).is_file() else scene.name
+    return replace(config, scene=name, figure=acting_body(world).info.figure)
+
+
+def own_engine(world: World) -> str:
+    """What an engine is, if a scene's name alone does not bring it back; empty if it does."""
+    source = world.scene.source
+    return "" if source == "built-in" or Path(source).is_file() else type(world).__name__
+
+
+def store_sources(folder: Path, config: EpisodeConfig, world: World) -> None:
+    """Put the files that an episode rests on into its run folder: an own scene, a script."""
+    scene = Path(world.scene.source)
+    if scene.suffix == ".toml" and scene.is_file():
+        write_whole(folder / SCENE, scene.read_bytes())
+    kind, _, path = config.model.partition(":")
+    if kind == "scripted" and Path(path).is_file():
+        write_whole(folder / SCRIPT, Path(path).read_bytes())
+
+
+def check_task(config: EpisodeConfig, world: World, own: Task | None) -> None:
+    """Make sure that a scene has what a task is about.
+
+    Raises:
+        ConfigError: It has not, or the task is unknown.
+    """
+    if own is None and config.task is None:
+        return
+    task = own or find_task(config.task or "")
+    lacking = sorted(task.objects - set(world.object_names))
+    areas = sorted(task.areas - {area.kind for area in world.scene.areas})
+    if lacking or areas:
+        what = [*(f"object {number}" for number in lacking), *(f"a {kind}" for kind in areas)]
+        raise ConfigError(
+            f"Task {task.id} needs {', '.join(what)}, which scene {world.scene.name!r} does not "
+            "have. Choose another task or scene, or give an instruction instead."
+        )
+
+
+def check_tools(
+    folder: Path, config: EpisodeConfig, recorded: Trajectory, tools: Sequence[Tool] | None
+) -> None:
+    """Make sure that everything that was done can be done again.
+
+    Raises:
+        RecordError: A tool is missing; names it.
+    """
+    here = {action_name(tool.action_type) for tool in tools_for(config, tools)}
+    done = {act.name for act in recorded.acts if act.feedback.code != Code.UNKNOWN_TOOL}
+    if lacking := sorted(done - here):
+        raise RecordError(
+            f"{folder} was recorded with the tool {', '.join(lacking)}, which is not here; hand "
+            "it in: tools=(*PAPER_TOOLS, ...)"
+        )
+
+
+def tools_for(config: EpisodeConfig, tools: Sequence[Tool] | None = None) -> Sequence[Tool]:
+    """The body's primitives in an episode.
+
+    Those that were handed in, or else those of the profile and the ones that the settings name,
+    which other packages offer under the entry points ``adamo_vh.tools``.
+
+    Raises:
+        ConfigError: A tool is not installed.
+    """
+    if tools is not None:
+        return tools
+    own = LEAN_TOOLS if config.profile.closeups else PAPER_TOOLS
+    found = offered_by_others(TOOLS) if config.added_tools else {}
+    if unknown := [name for name in config.added_tools if name not in found]:
+        offer = ", ".join(found) or "none is installed"
+        raise ConfigError(f"There is no tool {unknown[0]!r} from another package ({offer}).")
+    return (*own, *(cast(Tool, found[name].load()) for name in config.added_tools))
+
+
+def instructions(config: EpisodeConfig, engine: World, server: LocalActionServer) -> str:
+    """The system prompt of an episode: what its scene, labeling, tools and profile call for."""
+    return system_prompt(engine.scene, config.labeling, server.actions, NEAR_M, config.profile)
+
+
+def open_server(
+    config: EpisodeConfig, engine: World, tools: Sequence[Tool] | None = None
+) -> LocalActionServer:
+    """The action server of an episode.
+
+    Args:
+        config: Labeling, grid, resolution and profile.
+        engine: The world, just reset.
+        tools: The body's primitives; those of the profile by default.
+    """
+    perception = PerceptionConfig(
+        labeling=config.labeling,
+        grid=config.grid,
+        points_below_m=acting_body(engine).info.reach_top_m if config.profile.terse else math.inf,
+        points_on_walls=not config.profile.terse,
+    )
+    return LocalActionServer(
+        engine,
+        perception=perception,
+        resolution=config.resolution,
+        tools=tools_for(config, tools),
+    )

@@ -1,0 +1,169 @@
+"""The mind: a model from its URI, recorded runs and cassettes included."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+from adamo_vh.action_server.tools import INSPECT, SURVEY, Tool
+from adamo_vh.cognition.profile import PAPER, Profile, StateText
+from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.errors import ConfigError
+from adamo_vh.inference.model import Model, ModelInfo, ModelKind, Reply, Rung
+from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
+from adamo_vh.inference.players.resumed import resumed
+from adamo_vh.inference.players.scripted import ScriptedModel, load_script
+from adamo_vh.inference.registry import create_model
+from adamo_vh.record.run_folder import SCRIPT
+from adamo_vh.record.trajectory import Trajectory, read_trajectory
+
+_REPLAY = "replay:"
+
+
+def model_of(
+    uri: str,
+    *,
+    tools: str = "auto",
+    profile: Profile = PAPER,
+    answered: int = 0,
+    seed: int = 0,
+    script: Path | None = None,
+) -> Model:
+    """The model of a URI.
+
+    Args:
+        uri: As in `adamo_vh.inference.registry.create_model`, or ``replay:RUN_DIR``.
+        tools: How a remote model is asked for calls: "auto", "native", "schema" or "react".
+        profile: Decides whether a remote model may give several calls at once, and whether a
+            cache of its prompt pays.
+        answered: Replies that were given before an interruption; a model that answers from a list
+            leaves them out.
+        seed: Seed of the episode.
+        script: In place of the file that a scripted model names.
+
+    Raises:
+        ModelConfigError: The model is unknown or lacks a key or an extra.
+        RecordError: A run folder or cassette is missing or damaged.
+    """
+    if uri.startswith(_REPLAY):
+        folder = Path(uri.removeprefix(_REPLAY))
+        model: Model = recorded_model(read_trajectory(folder), uri, answered)
+    elif script is not None:
+        model = ScriptedModel(uri, load_script(script))
+    else:
+        model = create_model(
+            uri,
+            tools=tools,
+            several_calls=profile.plan > 1,
+            # A state at the front changes with every action, and all behind it would be written
+            # into the cache in vain.
+            cache=profile.state is not StateText.FIRST,
+            seed=seed,
+        )
+    if isinstance(model, ScriptedModel | Cassette):
+        model.skip(answered)
+    return model
+
+
+def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None) -> Profile:
+    """The profile that a model can follow, with the tools that it is given.
+
+    One that is asked for steps as text gives one a turn, and without the tools for close-ups there
+    are none.
+    """
+    if model.info.rung in (Rung.SCHEMA, Rung.REACT):
+        profile = replace(profile, plan=1)
+    if tools is not None and not {INSPECT, SURVEY} <= set(tools):
+        profile = replace(profile, closeups=False, min_confidence=0.0)
+    return profile
+
+
+def recorded_model(trajectory: Trajectory, name: str, answered: int = 0) -> Model:
+    """A model that says again what was said in a recorded episode, what could not be read too."""
+    said = [
+        Reply(
+            thought.reply.message,
+            unreadable=thought.reply.unreadable,
+            ending=thought.reply.ending,
+            finish_reason=thought.reply.finish_reason,
+        )
+        for thought in trajectory.thoughts[answered:]
+    ]
+    return resumed(said, ScriptedModel(name, (), kind=ModelKind.REPLAY))
+
+
+def opened_model(stack: ExitStack, config: EpisodeConfig, model: Model | None) -> Model:
+    """The model of an episode that begins: the one that was handed in, or that of the URI.
+
+    Args:
+        stack: Closes what is made here.
+        config: Names the model.
+        model: What was handed in.
+
+    Raises:
+        ConfigError: What was handed in is no model.
+        ModelConfigError: The model is unknown or lacks a key or an extra.
+    """
+    if model is not None:
+        check_model(model)
+        return model
+    made = model_of(config.model, tools=config.tool_calls, profile=config.profile, seed=config.seed)
+    stack.callback(made.info.close)
+    return made
+
+
+def check_model(model: object) -> None:
+    """Make sure that something handed in can be asked.
+
+    Raises:
+        ConfigError: It cannot; says what it lacks.
+    """
+    lacking = [
+        name
+        for name, is_there in (
+            ("info, a ModelInfo", isinstance(getattr(model, "info", None), ModelInfo)),
+            ("complete(messages, tools, sampling)", callable(getattr(model, "complete", None))),
+        )
+        if not is_there
+    ]
+    if lacking:
+        raise ConfigError(
+            f"{type(model).__name__} is no model: it lacks {' and '.join(lacking)} "
+            "(see adamo_vh.inference.model.Model)."
+        )
+
+
+def resumed_model(
+    stack: ExitStack,
+    folder: Path,
+    config: EpisodeConfig,
+    recorded: Trajectory,
+    model: Model | None,
+) -> Model:
+    """A model that says again what was recorded, and then goes on live.
+
+    Args:
+        stack: Closes what is made here.
+        folder: The run folder.
+        config: Names the model.
+        recorded: What happened so far.
+        model: Who goes on, if it was handed in.
+    """
+    said = [thought.reply for thought in recorded.thoughts]
+    script = folder / SCRIPT
+    live = model
+    if live is None:
+        live = model_of(
+            config.model,
+            tools=config.tool_calls,
+            profile=config.profile,
+            answered=len(said),
+            seed=config.seed,
+            script=script if script.is_file() else None,
+        )
+        stack.callback(live.info.close)
+    if (folder / FOLDER).is_dir():
+        live = taped(live, folder / FOLDER, known=len(said))
+    return resumed(said, live)

@@ -1,0 +1,56 @@
+"""What happens again while a record is executed: what is heard of it, and what is brought about."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+
+from adamo_vh.engine import WorldEvent
+from adamo_vh.observation import Frame
+from adamo_vh.record.trajectory import Event, Happened, Observer
+
+
+class FromThen:
+    """Leaves out the events that an observer has no need to hear again."""
+
+    def __init__(self, observer: Observer, known: int) -> None:
+        """Leave out the first ones.
+
+        Args:
+            observer: Hears the others.
+            known: How many are left out.
+        """
+        self._observer = observer
+        self._known = known
+
+    def notify(self, event: Event, frame: Frame | None = None) -> None:
+        """Pass an event on, if it is new."""
+        if self._known:
+            self._known -= 1
+        else:
+            self._observer.notify(event, frame)
+
+
+class Again:
+    """Lets happen in the world what is on record, at the moment at which it happened then."""
+
+    def __init__(self, known: Sequence[Event], apply: Callable[[WorldEvent], None]) -> None:
+        """Prepare.
+
+        Args:
+            known: What is on record and will come again.
+            apply: Lets something happen in the world.
+        """
+        self._ahead = deque(known)
+        self._apply = apply
+
+    def notify(self, event: Event, frame: Frame | None = None) -> None:
+        """Go on in the record."""
+        if self._ahead:
+            self._ahead.popleft()
+        self.catch_up()
+
+    def catch_up(self) -> None:
+        """Let happen what is next, if it is nothing that the agent does."""
+        if self._ahead and isinstance(self._ahead[0], Happened):
+            self._apply(self._ahead[0].event)

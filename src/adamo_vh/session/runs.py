@@ -1,0 +1,182 @@
+"""Single episodes: run, continued after an interruption, and executed again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Unpack
+
+from adamo_vh.action_server import Tool
+from adamo_vh.benchmark.tasks import Task
+from adamo_vh.cognition.budget import Budget
+from adamo_vh.cognition.guards import Guard
+from adamo_vh.cognition.memory.protocol import NewMemory
+from adamo_vh.engine import World
+from adamo_vh.episode.config import EpisodeConfig, Settings
+from adamo_vh.episode.replay import ReplayReport, replay
+from adamo_vh.episode.result import EpisodeResult, read_manifest
+from adamo_vh.errors import ConfigError, RecordError
+from adamo_vh.inference.model import Model
+from adamo_vh.record.run_folder import RESULT
+from adamo_vh.record.trajectory import Observer, read_trajectory
+from adamo_vh.session.bodies import check_tools, open_server, opened
+from adamo_vh.session.session import Session, read_unfinished
+
+
+def run_episode(
+    instruction: str | EpisodeConfig | None = None,
+    *,
+    out: str | Path | None = None,
+    record: bool = False,
+    engine: World | None = None,
+    model: str | Model | None = None,
+    tools: Sequence[Tool] | None = None,
+    memory: NewMemory | None = None,
+    guards: Sequence[Guard] = (),
+    observers: Sequence[Observer] = (),
+    **settings: Unpack[Settings],
+) -> EpisodeResult:
+    """Run one episode.
+
+    Args:
+        instruction: What the agent is told; or all settings as one `EpisodeConfig`. Left out, it
+            is the task's prompt.
+        out: Run folder for manifest, events, frames, result and page; none is written without.
+        record: Also keep every request and reply of the model there, as a cassette.
+        engine: In place of the scene's; is reset, and not closed.
+        model: URI ("baseline", "scripted:FILE.json", "replay:RUN_DIR", "cassette:DIR",
+            "openai:NAME", "openai:NAME@URL", ...) or an own `Model`.
+        tools: The body's primitives; those of the profile by default.
+        memory: Makes the memory; the short-term memory by default.
+        guards: Further reasons to stop, e.g. the budget of a whole run.
+        observers: Are told of every event.
+        **settings: Every other setting by its name: task, scene, labeling, profile, switches,
+            seed, resolution, limits, budget, ... See `EpisodeConfig` and `Settings`.
+
+    Returns:
+        The scored and counted result. `score` is None if there is no task or the episode broke
+        through no fault of the model.
+
+    Raises:
+        ConfigError: A setting is wrong; nothing was started.
+        SceneError: The scene is wrong.
+        ModelConfigError: The model is unknown or lacks a key or an extra.
+        RecordError: `out` already holds an episode, or somebody else writes it.
+        FileError: `out` cannot be written.
+    """
+    task = settings.get("task")
+    config = _config(instruction, model, settings)
+    with Session.begin(
+        config,
+        out,
+        record=record,
+        engine=engine,
+        model=None if isinstance(model, str) else model,
+        tools=tools,
+        memory=memory,
+        task=task if isinstance(task, Task) else None,
+        guards=guards,
+        observers=observers,
+    ) as session:
+        session.say(config.instruction)
+        return session.result()
+
+
+def _config(
+    instruction: str | EpisodeConfig | None, model: str | Model | None, settings: Settings
+) -> EpisodeConfig:
+    if isinstance(instruction, EpisodeConfig):
+        if settings:
+            raise ConfigError(
+                f"Set {', '.join(settings)} in the EpisodeConfig, or give the instruction alone."
+            )
+        return replace(instruction, model=model) if isinstance(model, str) else instruction
+    if isinstance(model, str):
+        return EpisodeConfig.of(instruction, model=model, **settings)
+    return EpisodeConfig.of(instruction, **settings)
+
+
+def resume_episode(
+    folder: str | Path,
+    *,
+    budget: Budget | None = None,
+    engine: World | None = None,
+    model: Model | None = None,
+    tools: Sequence[Tool] | None = None,
+    memory: NewMemory | None = None,
+    task: Task | None = None,
+    guards: Sequence[Guard] = (),
+    observers: Sequence[Observer] = (),
+) -> EpisodeResult:
+    """Go on with an episode that was interrupted at any moment, or broke.
+
+    What was recorded is executed again, with the recorded answers in place of the model's; from
+    there the model goes on. Nothing is asked or written twice.
+
+    Args:
+        folder: Its run folder.
+        budget: Holds from now on, in place of the recorded one.
+        engine: As when it began; made from the record by default.
+        model: Who goes on; by default the model that the manifest names.
+        tools: The body's primitives, as when it began.
+        memory: As when it began.
+        task: What is scored, if it is no built-in task.
+        guards: Further reasons to stop.
+        observers: Are told of every event that is new.
+
+    Raises:
+        RecordError: The folder holds no run, or one that has ended, or a conversation; or somebody
+            else writes it; or it came out otherwise. The record is as it was.
+    """
+    path = Path(folder)
+    read_manifest(path)
+    recorded = read_unfinished(path)
+    if len(recorded.instructions) > 1:
+        raise RecordError(f"{path} is a conversation; go on with: adamo-vh chat --resume {path}")
+    ended = recorded.ended
+    if ended is not None and ended.reason.is_scored and (path / RESULT).exists():
+        raise RecordError(f"{path} has ended ({ended.reason}); nothing is left to resume.")
+    with Session.resume(
+        path,
+        budget=budget,
+        engine=engine,
+        model=model,
+        tools=tools,
+        memory=memory,
+        task=task,
+        guards=guards,
+        observers=observers,
+    ) as session:
+        if not session.trajectory.instructions:
+            session.say(session.config.instruction)
+        return session.result()
+
+
+def replay_episode(
+    folder: str | Path,
+    start: int = 0,
+    *,
+    engine: World | None = None,
+    tools: Sequence[Tool] | None = None,
+) -> ReplayReport:
+    """Execute a recorded episode again without its model and compare every state hash.
+
+    Args:
+        folder: A run folder.
+        start: Begin after this many steps, from the state that was saved there.
+        engine: As when it was recorded; made from the record by default.
+        tools: The body's primitives, as when it was recorded; those of the profile by default.
+
+    Raises:
+        RecordError: The folder holds no readable run, or has no such step, or it needs an engine
+            or a tool that is not here.
+    """
+    path = Path(folder)
+    manifest, recorded = read_manifest(path), read_trajectory(path)
+    config = manifest.config
+    check_tools(path, config, recorded, tools)
+    with ExitStack() as stack:
+        world = opened(stack, config, engine, (path, manifest))
+        return replay(open_server(config, world, tools), world, recorded, start)

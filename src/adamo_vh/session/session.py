@@ -1,0 +1,378 @@
+"""The session: where engine, model, memory, task and record meet."""
+
+from __future__ import annotations
+
+import platform
+import warnings
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Self
+
+from adamo_vh.action_server import Tool
+from adamo_vh.benchmark.tasks import Task
+from adamo_vh.cognition.agent import Agent, AgentConfig
+from adamo_vh.cognition.budget import Budget, BudgetGuard
+from adamo_vh.cognition.forecast import Forecast
+from adamo_vh.cognition.guards import Guard
+from adamo_vh.cognition.memory.protocol import NewMemory
+from adamo_vh.cognition.memory.short_term import ShortTermMemory
+from adamo_vh.engine import World, WorldEvent, WorldState
+from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.episode.result import (
+    EpisodeResult,
+    Manifest,
+    read_manifest,
+    summarise,
+    write_record,
+)
+from adamo_vh.errors import ConfigError, FileError, RecordError
+from adamo_vh.inference.model import Model, ModelKind
+from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
+from adamo_vh.record.run_folder import (
+    EVENTS,
+    FORMAT,
+    MANIFEST,
+    RESULT,
+    FolderLock,
+    check_unused,
+)
+from adamo_vh.record.trajectory import (
+    Ended,
+    Event,
+    Observer,
+    Trajectory,
+    read_trajectory,
+)
+from adamo_vh.record.writer import TrajectoryWriter
+from adamo_vh.report.page import try_page
+from adamo_vh.session.bodies import (
+    as_said,
+    check_task,
+    check_tools,
+    instructions,
+    open_server,
+    opened,
+    own_engine,
+    store_sources,
+)
+from adamo_vh.session.forecasting import check_price, forecast_episodes
+from adamo_vh.session.minds import fitting, opened_model, resumed_model
+from adamo_vh.session.repeating import Again, FromThen
+
+_REPORTED = ("adamo-vh", "mujoco", "numpy", "pillow", "opencv-python-headless", "pydantic-ai-slim")
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What can be handed in from outside, each in place of what the settings name."""
+
+    engine: World | None = None
+    model: Model | None = None
+    tools: Sequence[Tool] | None = None
+    memory: NewMemory | None = None
+    task: Task | None = None
+    guards: Sequence[Guard] = ()
+    observers: Sequence[Observer] = ()
+
+
+class Session:
+    """One body, one mind, and what the user says to it; recorded as it happens.
+
+    An episode is one instruction. A conversation is several: a question of the agent is its final
+    answer to an instruction, and what the user answers is the next one. Any run folder can be gone
+    on with, whether it is of an episode or of a conversation.
+    """
+
+    def __init__(
+        self,
+        manifest: Manifest,
+        world: World,
+        model: Model,
+        parts: Parts,
+        *,
+        writer: TrajectoryWriter | None = None,
+        folder: Path | None = None,
+        known: Sequence[Event] = (),
+        closing: ExitStack | None = None,
+    ) -> None:
+        """Bring the parts together; use `begin` or `resume`.
+
+        Args:
+            manifest: How the session is set up.
+            world: Just reset.
+            model: Who decides.
+            parts: What was handed in.
+            writer: Of the record, if one is written.
+            folder: Its run folder.
+            known: What is on record already and will come again.
+            closing: What is closed with the session.
+        """
+        self.manifest = manifest
+        self.folder = folder
+        self.engine = world
+        self.model = model
+        self._parts, self._writer = parts, writer
+        self._closing = closing or ExitStack()
+        self._trajectory = Trajectory()
+        config = manifest.config
+        server = open_server(config, world, parts.tools)
+        prompt = instructions(config, world, server)
+        memory = parts.memory or ShortTermMemory
+        self._happening = Again(known, self.apply)
+        self._agent = Agent(
+            model,
+            server,
+            prompt,
+            AgentConfig(config.profile, config.k, config.text_form, config.sampling, config.limits),
+            memory=memory(prompt, config.k, config.profile, config.text_form),
+            guards=(BudgetGuard(config.budget), *parts.guards),
+            records=(*((writer,) if writer else ()), self._trajectory, self._happening),
+            observers=[FromThen(observer, len(known)) for observer in parts.observers],
+            known=known,
+        )
+
+    @classmethod
+    def begin(
+        cls,
+        config: EpisodeConfig,
+        out: str | Path | None = None,
+        *,
+        record: bool = False,
+        engine: World | None = None,
+        model: Model | None = None,
+        tools: Sequence[Tool] | None = None,
+        memory: NewMemory | None = None,
+        task: Task | None = None,
+        guards: Sequence[Guard] = (),
+        observers: Sequence[Observer] = (),
+    ) -> Self:
+        """Begin; nothing is said yet.
+
+        Args:
+            config: Scene, model, profile, limits: everything that can be written down.
+            out: A new run folder for manifest, events, frames, result and page; none without.
+            record: Also keep every request and reply of the model there, as a cassette.
+            engine: In place of the scene's; is reset, and not closed.
+            model: In place of the one that the URI names; is not closed.
+            tools: The body's primitives; those of the profile by default.
+            memory: Makes the memory; the short-term memory by default.
+            task: What is scored, if it is no built-in task.
+            guards: Further reasons to stop.
+            observers: Are told of every event.
+
+        Raises:
+            ConfigError: A setting is wrong; nothing was started.
+            SceneError: The scene is wrong.
+            ModelConfigError: The model is unknown or lacks a key or an extra.
+            RecordError: `out` already holds a run, or somebody else writes it.
+        """
+        if record and out is None:
+            raise ConfigError("A recording needs a run folder: give out as well.")
+        parts = Parts(engine, model, tools, memory, task, guards, observers)
+        with ExitStack() as stack:
+            mind = opened_model(stack, config, model)
+            if model is None:
+                check_price(config.model, mind, config.budget)
+            config = replace(
+                config,
+                model=mind.info.name if model is not None else config.model,
+                profile=fitting(config.profile, mind, tools),
+            )
+            world = opened(stack, config, engine)
+            if engine is not None:
+                config = as_said(config, world)
+            check_task(config, world, task)
+            manifest = describe(config, mind, world, own_engine(world) if engine else "")
+            writer, folder = None, None if out is None else Path(out)
+            if folder is not None:
+                lock = stack.enter_context(FolderLock(folder))
+                check_unused(folder)
+                store_sources(folder, config, world)
+                write_record(folder, MANIFEST, manifest)
+                writer = TrajectoryWriter(folder, lock=lock)
+                stack.callback(writer.close)
+                if record:
+                    mind = taped(mind, folder / FOLDER)
+            return cls(
+                manifest, world, mind, parts, writer=writer, folder=folder, closing=stack.pop_all()
+            )
+
+    @classmethod
+    def resume(
+        cls,
+        folder: str | Path,
+        *,
+        budget: Budget | None = None,
+        engine: World | None = None,
+        model: Model | None = None,
+        tools: Sequence[Tool] | None = None,
+        memory: NewMemory | None = None,
+        task: Task | None = None,
+        guards: Sequence[Guard] = (),
+        observers: Sequence[Observer] = (),
+    ) -> Self:
+        """Go on in a run folder, in the state in which it was left.
+
+        What was recorded is executed again, with the recorded replies in place of the model's; an
+        instruction that was interrupted, or broke as the last one, is then carried out to its end.
+        Nothing is asked or written twice, and nothing is changed before all of it came again.
+
+        Args:
+            folder: A run folder.
+            budget: Holds from now on, in place of the recorded one.
+            engine: As when it began; made from the record by default.
+            model: Who goes on; by default the model that the manifest names.
+            tools: As when it began.
+            memory: As when it began.
+            task: As when it began.
+            guards: Further reasons to stop.
+            observers: Are told of every event that is new.
+
+        Raises:
+            RecordError: The folder holds no run, or one of an older version, or somebody else
+                writes it, or it came out otherwise. The record is as it was.
+        """
+        path = Path(folder)
+        parts = Parts(engine, model, tools, memory, task, guards, observers)
+        read_manifest(path)
+        with ExitStack() as stack:
+            lock = stack.enter_context(FolderLock(path))
+            manifest, recorded = read_manifest(path), read_unfinished(path)
+            if manifest.format != FORMAT:
+                raise RecordError(
+                    f"{path} was written by an older version of ADAMO: it can be shown and "
+                    "replayed, and not be continued. Run it again."
+                )
+            check_tools(path, manifest.config, recorded, tools)
+            known = recorded.events
+            if (ended := recorded.ended) is not None and not ended.reason.is_scored:
+                known = known[:-1]  # It broke: let it go on from there.
+            mind = resumed_model(stack, path, manifest.config, recorded, model)
+            if budget:
+                manifest = replace(manifest, config=replace(manifest.config, budget=budget))
+                check_price(manifest.config.model, mind, budget)
+            world = opened(stack, manifest.config, engine, (path, manifest))
+            writer = TrajectoryWriter(path, known=known, lock=lock)
+            stack.callback(writer.close)
+            session = cls(
+                manifest,
+                world,
+                mind,
+                parts,
+                writer=writer,
+                folder=path,
+                known=known,
+                closing=stack.pop_all(),
+            )
+        try:
+            session._happening.catch_up()
+            for instruction in recorded.instructions:
+                session._carry_out(instruction)
+            if budget:
+                write_record(path, MANIFEST, manifest)
+        except BaseException:
+            session.close()
+            raise
+        return session
+
+    @property
+    def config(self) -> EpisodeConfig:
+        """How the session is set up."""
+        return self.manifest.config
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """What happened so far."""
+        return self._trajectory
+
+    def forecast(self) -> Forecast | None:
+        """What an episode will take, if a provider is to be asked."""
+        is_asked = self.manifest.model_kind is ModelKind.VLM
+        if not is_asked or isinstance(self._parts.model, Cassette):
+            return None
+        return forecast_episodes(self.config, self.engine)
+
+    def say(self, instruction: str) -> Ended:
+        """Have one instruction carried out; world and memory stay for the next one.
+
+        Raises:
+            RecordError: It came out otherwise than recorded.
+            FileError: The record cannot be written any more; it can be gone on with later.
+        """
+        ended = self._carry_out(instruction)
+        if self.folder is not None:
+            try_page(self.folder)
+        return ended
+
+    def _carry_out(self, instruction: str) -> Ended:
+        ended = self._agent.run(instruction)
+        if self._writer is not None and self._writer.fault is not None:
+            raise self._writer.fault
+        return ended
+
+    def apply(self, event: WorldEvent) -> None:
+        """Let something happen in the world that its body does not do; it goes on record.
+
+        Raises:
+            EngineError: The engine cannot do it, or not now; nothing changed.
+        """
+        self.engine.apply(event)
+        self._agent.happened(event, self.engine.state().hash())
+
+    def result(self) -> EpisodeResult:
+        """Score and count what happened since the session began; written into the run folder.
+
+        Raises:
+            RecordError: The last instruction has not ended.
+        """
+        final = _last_state(self.engine, self.manifest)
+        task = self._parts.task
+        result = summarise(self.manifest, self._trajectory, final, self.folder, task)
+        if self.folder is not None:
+            try:
+                write_record(self.folder, RESULT, result)
+            except FileError as error:
+                # A full disk may take the files, never the score.
+                again = f"once that is mended: adamo-vh run --resume {self.folder}"
+                warnings.warn(f"the result is not written: {error} ({again})", stacklevel=2)
+            try_page(self.folder)
+        return result
+
+    def close(self) -> None:
+        """Close what was opened; the session can be resumed from its folder."""
+        self._closing.close()
+
+    def __enter__(self) -> Self:
+        """The session itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close it."""
+        self.close()
+
+
+def describe(config: EpisodeConfig, model: Model, world: World, engine: str = "") -> Manifest:
+    """The manifest of an episode that is about to begin."""
+    versions = {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}}
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    who = model.info
+    return Manifest(
+        config, who.name, who.kind, versions, now, world.state(), who.capabilities, engine
+    )
+
+
+def read_unfinished(folder: Path) -> Trajectory:
+    """What was recorded so far; nothing, if the run was stopped before its first event."""
+    return read_trajectory(folder) if (folder / EVENTS).exists() else Trajectory()
+
+
+def _last_state(world: World, manifest: Manifest) -> WorldState:
+    """The world at the end; as it began, if the engine has nothing to say any more."""
+    try:
+        return world.state()
+    except Exception:
+        return manifest.initial
