@@ -89,7 +89,10 @@ def verdict(
 def ending(limits: Limits, ended: Ended) -> tuple[str, str, str]:
     """How one instruction ended: a tone for the colour, a headline and a sentence."""
     tone, headline, sentence = _ENDINGS[ended.reason]
-    return tone, headline, sentence.format(limits=limits)
+    told = sentence.format(limits=limits)
+    if not ended.why:
+        return tone, headline, told
+    return tone, headline, f"{told} {ended.why}" if tone == "broken" else ended.why
 
 
 @dataclass(frozen=True, slots=True)
