@@ -40,7 +40,7 @@ def environment() -> Environment:
         lstrip_blocks=True,
     )
     made.filters.update(
-        place=_place,
+        place=Vec3.text,
         degrees=_degrees,
         seconds=_seconds,
         thousands=_thousands,
@@ -67,12 +67,6 @@ def _folded(text: str) -> tuple[str, str]:
         if found and found[-1] > _SHOWN / 2:
             return text[: found[-1]].rstrip(), text[found[-1] :].lstrip("\n")
     return text[:_SHOWN], text[_SHOWN:]
-
-
-def _place(point: Vec3, digits: int = 2) -> str:
-    # Rounding first turns -0.001 into 0.00, never -0.00.
-    p = point.rounded(digits)
-    return f"({p.x:.{digits}f}, {p.y:.{digits}f}, {p.z:.{digits}f})"
 
 
 def _degrees(angle_rad: float) -> str:
