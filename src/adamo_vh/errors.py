@@ -23,6 +23,8 @@ it becomes feedback and the loop goes on.
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class AdamoError(Exception):
     """Base of all errors; the message names the fix."""
@@ -69,7 +71,13 @@ class RenderingError(EngineError):
 
 
 class ModelError(AdamoError):
-    """The model could not answer; the episode is unscored."""
+    """The model could not answer; the episode is unscored.
+
+    Attributes:
+        spent: What was spent before that, an `adamo_vh.inference.model.Spent`; None for nothing.
+    """
+
+    spent: Any = None
 
 
 class ModelConfigError(ModelError):

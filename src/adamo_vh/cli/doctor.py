@@ -52,8 +52,17 @@ def _findings() -> Iterator[Finding]:
     yield _guarded("cache", _cache, "set ADAMO_VH_CACHE_DIR to a folder that can be written")
     yield _guarded("graphics", _graphics, "apt-get install libegl1 libopengl0 libgl1-mesa-dri")
     yield _guarded("test frame", _test_frame, "see the line above; then run adamo-vh doctor again")
+    yield _way_to_models()
     set_keys = [key for key in _KEYS if os.environ.get(key)]
     yield Finding("keys", True, f"set: {', '.join(set_keys) or 'none (the baseline needs none)'}")
+
+
+def _way_to_models() -> Finding:
+    """Proxies, certificates and keys of the environment."""
+    from adamo_vh.inference.remote.routes import environment_problems
+
+    first, *more = environment_problems() or [""]
+    return Finding("way to models", not first, "free" if not first else " ".join((first, *more)))
 
 
 def _guarded(check: str, examine_it: Callable[[], str], fix: str) -> Finding:

@@ -129,11 +129,36 @@ class Reply:
     """What the answer is; follows from the message if it is left out."""
     finish_reason: str = ""
     """Why the answer ended, in the provider's own word; empty if there is none."""
+    warning: str = ""
+    """What people should know of it, e.g. that the server has cut the prompt; empty if nothing."""
 
     def __post_init__(self) -> None:
         """Tell what the answer is, where the model did not."""
         if self.ending is None:
             object.__setattr__(self, "ending", _ending(self))
+
+
+@dataclass(frozen=True, slots=True)
+class Spent:
+    """What was spent on an answer that never came."""
+
+    usage: Usage = Usage()
+    requests: int = 0
+    cost_usd: float | None = None
+    """None if no price is known."""
+    seconds: float = 0.0
+    waited_s: float = 0.0
+
+    def after(self, reply: Reply) -> Spent:
+        """The same with what a reply took that came before; one unknown price makes it unknown."""
+        costs = (reply.cost_usd, self.cost_usd)
+        return Spent(
+            reply.usage + self.usage,
+            reply.requests + self.requests,
+            None if costs[0] is None or costs[1] is None else costs[0] + costs[1],
+            reply.seconds + self.seconds,
+            reply.waited_s + self.waited_s,
+        )
 
 
 def _ending(reply: Reply) -> Ending:

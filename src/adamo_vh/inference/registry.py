@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from adamo_vh.errors import ModelConfigError, ModelError
 from adamo_vh.inference.model import Model, Rung
+from adamo_vh.inference.redaction import public
 from adamo_vh.inference.remote.retry import RetryPolicy
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def check_remote_uri(uri: str) -> None:
     """
     prefix, _, rest = uri.partition(":")
     if not rest or not (prefix == "openai" or _is_known_provider(prefix)):
-        raise ModelConfigError(f"Unknown model {uri!r}. Known: {KNOWN}.")
+        raise ModelConfigError(f"Unknown model {public(uri)!r}. Known: {KNOWN}.")
 
 
 def create_local_model(uri: str, *, seed: int = 0) -> Model | None:

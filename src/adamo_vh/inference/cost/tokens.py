@@ -48,6 +48,7 @@ __all__ = [
     "QWEN",
     "QWEN_3",
     "ImageRule",
+    "cut_prompt",
     "estimate_image",
     "estimate_message",
     "estimate_reply",
@@ -170,6 +171,34 @@ def filled_usage(
     if (read, said) == (usage.input_tokens, usage.output_tokens):
         return usage
     return replace(usage, input_tokens=read, output_tokens=said, estimated=True)
+
+
+_CUT = 0.6
+"""No tokenizer makes so much fewer tokens of our texts than are estimated."""
+_SHORT = 500
+"""Tokens; so little no server cuts."""
+
+
+def cut_prompt(usage: Usage, messages: Iterable[Message], tools: Iterable[ToolSchema]) -> str:
+    """What to say if a server has counted far fewer tokens than the prompt has; empty if not.
+
+    Some servers cut what is longer than their context without a word, Ollama's default above all:
+    then the model has not read its instructions. Pictures are left out: they differ too much.
+
+    Args:
+        usage: As the server counted.
+        messages: The prompt.
+        tools: What was on offer.
+    """
+    expected = sum(estimate_text(text) for message in messages for text in _texts(message))
+    expected += estimate_tools(tools)
+    if usage.estimated or expected < _SHORT or usage.input_tokens >= _CUT * expected:
+        return ""
+    return (
+        f"The server counted {usage.input_tokens:,} tokens of a prompt of about {expected:,}: it "
+        "may have cut the prompt to its context. Give the server a longer one (Ollama: "
+        "OLLAMA_CONTEXT_LENGTH, llama-server: --ctx-size)."
+    )
 
 
 def _texts(message: Message) -> Iterator[str]:

@@ -6,11 +6,12 @@ text: the agent above sees the same notes and calls from each rung.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Protocol
 
 from adamo_vh.action import ToolSchema
+from adamo_vh.errors import ModelError
 from adamo_vh.inference.arguments import dump_arguments
 from adamo_vh.inference.ladder.conversation import UNREADABLE, merged, rewritten
 from adamo_vh.inference.ladder.json_form import JsonForm
@@ -25,7 +26,7 @@ from adamo_vh.inference.ladder.steps import (
     takes_note,
 )
 from adamo_vh.inference.messages import AIMessage, HumanMessage, Message, TextPart, ToolCall
-from adamo_vh.inference.model import Ending, ModelInfo, Reply, Rung, Sampling
+from adamo_vh.inference.model import Ending, ModelInfo, Reply, Rung, Sampling, Spent
 from adamo_vh.inference.prompts import render
 from adamo_vh.inference.remote.capabilities import Capabilities
 from adamo_vh.inference.text_calls import fresh_id, read_calls
@@ -101,7 +102,9 @@ class Ladder:
         outcome = self._read(reply, messages, tools)
         if isinstance(outcome, Unreadable) and reply.ending is not Ending.FILTERED:
             prompt = merged([*prompt, *_repair(reply.message, outcome, form, tools)])
-            again = self._inner.complete(prompt, (), sampling, schema=schema)
+            again = _repaired(
+                reply, lambda: self._inner.complete(prompt, (), sampling, schema=schema)
+            )
             reply = _together(reply, again)
             outcome = self._read(again, messages, tools)
         if isinstance(outcome, AIMessage):
@@ -172,6 +175,15 @@ def _repair(
     asked = HumanMessage((TextPart(text),))
     # Servers refuse an empty message in the history.
     return [said, asked] if said.text.strip() else [asked]
+
+
+def _repaired(first: Reply, ask: Callable[[], Reply]) -> Reply:
+    """The reply of a repair turn; if none comes, what the first one took is not forgotten."""
+    try:
+        return ask()
+    except ModelError as error:
+        error.spent = (error.spent or Spent()).after(first)
+        raise
 
 
 def _together(first: Reply, second: Reply) -> Reply:

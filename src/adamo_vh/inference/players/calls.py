@@ -28,7 +28,7 @@ from adamo_vh.inference.messages import (
     ToolMessage,
 )
 from adamo_vh.inference.model import Reply, Sampling
-from adamo_vh.inference.redaction import redacted
+from adamo_vh.inference.redaction import clean_message, cleaned, redacted
 
 Clean = Callable[[str], str]
 
@@ -118,8 +118,7 @@ def request_of(
         clean: Is applied to every text; takes keys out unless told otherwise.
     """
     offered = tuple(
-        ToolSchema(clean(t.name), clean(t.description), _cleaned(t.parameters, clean))
-        for t in tools
+        ToolSchema(clean(t.name), clean(t.description), cleaned(t.parameters, clean)) for t in tools
     )
     return Request(tuple(_kept(m, clean) for m in messages), offered, sampling)
 
@@ -128,10 +127,11 @@ def clean_reply(reply: Reply, clean: Clean = without_keys) -> Reply:
     """A reply without keys."""
     return replace(
         reply,
-        message=_clean_answer(reply.message, clean),
-        settings=_cleaned(dict(reply.settings), clean),
+        message=clean_message(reply.message, clean),
+        settings=cleaned(dict(reply.settings), clean),
         unreadable=clean(reply.unreadable),
         finish_reason=clean(reply.finish_reason),
+        warning=clean(reply.warning),
     )
 
 
@@ -157,7 +157,7 @@ def _kept(message: Message, clean: Clean) -> Kept:
         case SystemMessage():
             return SystemMessage(clean(message.text))
         case AIMessage():
-            return _clean_answer(message, clean)
+            return clean_message(message, clean)
         case HumanMessage():
             return Human(
                 tuple(
@@ -170,30 +170,6 @@ def _kept(message: Message, clean: Clean) -> Kept:
             return ToolResult(message.call_id, message.name, clean(message.text), images)
         case _:
             assert_never(message)
-
-
-def _clean_answer(message: AIMessage, clean: Clean) -> AIMessage:
-    calls = tuple(
-        ToolCall(
-            call.id,
-            clean(call.name),
-            None if call.arguments is None else _cleaned(dict(call.arguments), clean),
-            clean(call.raw),
-        )
-        for call in message.calls
-    )
-    return AIMessage(clean(message.text), calls, clean(message.kept))
-
-
-def _cleaned(value: Any, clean: Clean) -> Any:
-    """JSON data with every text in it cleaned."""
-    if isinstance(value, str):
-        return clean(value)
-    if isinstance(value, dict):
-        return {key: _cleaned(item, clean) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_cleaned(item, clean) for item in value]
-    return value
 
 
 def _picture(part: ImagePart) -> Picture:

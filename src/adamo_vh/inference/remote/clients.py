@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 from adamo_vh.errors import ModelConfigError
 from adamo_vh.inference.redaction import redacted
 from adamo_vh.inference.remote.compatible import compatible_client
-from adamo_vh.inference.remote.endpoint import Endpoint, check_remote_allowed
+from adamo_vh.inference.remote.endpoint import (
+    NO_REMOTE,
+    Endpoint,
+    check_remote_allowed,
+    remote_forbidden,
+)
+from adamo_vh.inference.remote.routes import check_way
 
 if TYPE_CHECKING:
     import httpx2
@@ -51,6 +57,7 @@ def connect(endpoint: Endpoint, http: httpx2.AsyncClient) -> Connection:
             or remote models are forbidden.
     """
     check_remote_allowed(endpoint)
+    check_way(endpoint)
     if endpoint.prefix == "openai":
         return _described(_openai(endpoint, http), "openai-chat")
     return _described(_inferred(endpoint, http), endpoint.prefix)
@@ -120,6 +127,11 @@ def _provider(endpoint: Endpoint, http: httpx2.AsyncClient) -> Provider[Any]:
     make = infer_provider_class(endpoint.prefix)
     takes = inspect.signature(make).parameters
     options: dict[str, Any] = {"http_client": http} if _takes_httpx2(takes) else {}
+    if not options and remote_forbidden():
+        raise ModelConfigError(
+            f"{endpoint.prefix}: its library sends on ways of its own, and {NO_REMOTE} forbids all "
+            f"but this machine. Write openai:{endpoint.model}@{endpoint.base_url}."
+        )
     if endpoint.base_url is None:
         _check_key(endpoint)
         return make(**options)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
 from adamo_vh.errors import ModelConfigError
+from adamo_vh.inference.redaction import public
 from adamo_vh.serving.loopback import is_loopback
 
 NO_REMOTE = "ADAMO_VH_NO_REMOTE"
@@ -21,6 +23,8 @@ _KEYS = {
 }
 """Environment variables of keys, the first that is set counts."""
 
+_IN_HEADERS = ("OPENAI_ORG_ID", "OPENAI_PROJECT_ID", "ANTHROPIC_AUTH_TOKEN", "OPENROUTER_API_KEY")
+"""What client libraries take out of the environment and put into headers as well."""
 
 _ADDRESS = re.compile(r"@(?=(?://)?(?:localhost\b|[^@/\s]+:\d|\[))(?://)?(.+)$")
 """An address without its scheme at the end of a model's name."""
@@ -38,16 +42,23 @@ class Endpoint:
     """Address of the server, if one was given."""
 
     @property
-    def key_variable(self) -> str:
-        """Environment variable of its key; a guess for all but the providers with wires of ours."""
+    def key_variables(self) -> tuple[str, ...]:
+        """Environment variables of its key; a guess for all but the providers with wires of ours.
+
+        The first that is set counts.
+        """
         guess = re.sub(r"\W", "_", f"{self.prefix.upper()}_API_KEY")
-        return _KEYS.get(self.prefix, (guess,))[0]
+        return _KEYS.get(self.prefix, (guess,))
+
+    @property
+    def key_variable(self) -> str:
+        """The first of `key_variables`."""
+        return self.key_variables[0]
 
     @property
     def key(self) -> str | None:
         """The key; None if the environment has none under a name that we know."""
-        names = _KEYS.get(self.prefix, (self.key_variable,))
-        return next((os.environ[name] for name in names if os.environ.get(name)), None)
+        return next((os.environ[n] for n in self.key_variables if os.environ.get(n)), None)
 
     @property
     def has_known_key(self) -> bool:
@@ -68,9 +79,10 @@ def parse_endpoint(uri: str) -> Endpoint:
         raise ModelConfigError("A remote model is written PROVIDER:NAME, e.g. openai:gpt-4o.")
     if base_url is None and (lost := _ADDRESS.search(model)):
         # Else the request would go to the provider, with the key.
+        written = public(f"{prefix}:{model[: lost.start()]}@{lost[1]}")
+        name, _, address = written.rpartition("@")
         raise ModelConfigError(
-            f"{uri}: write the address with its scheme, "
-            f"{prefix}:{model[: lost.start()]}@http://{lost[1]}."
+            f"{written}: write the address with its scheme, {name}@http://{address}."
         )
     endpoint = Endpoint(prefix, model, base_url)
     if base_url is not None:
@@ -102,7 +114,7 @@ def check_remote_allowed(endpoint: Endpoint) -> None:
     Raises:
         ModelConfigError: The switch is on and the model is not on a loopback address.
     """
-    if os.environ.get(NO_REMOTE, "0") in ("", "0"):
+    if not remote_forbidden():
         return
     host = urlsplit(endpoint.base_url).hostname if endpoint.base_url else None
     if host is None or not is_loopback(host):
@@ -110,6 +122,27 @@ def check_remote_allowed(endpoint: Endpoint) -> None:
             f"{endpoint.prefix}:{endpoint.model} is a remote model and {NO_REMOTE} forbids those. "
             f"Unset {NO_REMOTE}, or use baseline, a script or a server on 127.0.0.1."
         )
+
+
+def remote_forbidden() -> bool:
+    """Whether the switch is on."""
+    return os.environ.get(NO_REMOTE, "0") not in ("", "0")
+
+
+def key_problems(names: Iterable[str] | None = None) -> Iterator[str]:
+    """What is wrong with the keys in the environment, a sentence with the fix each.
+
+    Args:
+        names: Environment variables; all that are known by default.
+    """
+    wanted = [*(names if names is not None else (n for some in _KEYS.values() for n in some))]
+    for name in dict.fromkeys((*wanted, *_IN_HEADERS)):
+        value = os.environ.get(name, "")
+        odd = next((letter for letter in value if not "!" <= letter <= "~"), "")
+        if odd:
+            what = "a line break" if odd in "\r\n" else "a blank" if odd == " " else "a letter"
+            what = f"{what} that is not ASCII" if odd > "~" else what
+            yield f"{name} holds {what}, which no key has; set it again without."
 
 
 def is_known_provider(prefix: str) -> bool:

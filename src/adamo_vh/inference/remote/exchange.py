@@ -7,21 +7,13 @@ taken from the bytes, not from what the library was asked for.
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    import ssl
-
-    import httpx2
-
-_CONNECT_S = 10.0
-"""A server that takes longer to accept a connection is not there."""
+from adamo_vh.inference.remote.mended import read_json
 
 
 @dataclass(slots=True)
@@ -46,14 +38,15 @@ class Exchange:
     """From the last request to the end of its answer; 0 if there was none."""
     started_s: float = 0.0
     """When the last request went out, on the monotonic clock."""
+    location: str = ""
+    """Address of the last request."""
+    fault: str = ""
+    """Why its answer was not taken, in words for people; empty if it was."""
 
     @property
     def body(self) -> Any:
         """The body of the last answer as JSON; None if it is none."""
-        try:
-            return json.loads(self.text)
-        except (ValueError, RecursionError):
-            return None
+        return read_json(self.text)
 
 
 _current: ContextVar[Exchange | None] = ContextVar("adamo_exchange", default=None)
@@ -63,69 +56,51 @@ class SettingWithheldError(RuntimeError):
     """A required setting is not in the request; raised before anything is sent."""
 
 
-def watch(exchange: Exchange) -> None:
-    """Note what the current task, and the tasks it starts, send and get from here on."""
-    _current.set(exchange)
-
-
-def watching_client(timeout_s: float) -> httpx2.AsyncClient:
-    """Make an HTTP client that notes what it sends and gets.
+def note_request(exchange: Exchange, content: bytes, address: str) -> None:
+    """Note a request that is about to go out.
 
     Args:
-        timeout_s: Seconds at most for one request.
+        exchange: Takes it.
+        content: Its body.
+        address: Where it goes.
+
+    Raises:
+        SettingWithheldError: A setting that was insisted on is not in it.
     """
-    import httpx2
-
-    return httpx2.AsyncClient(
-        verify=_trusted(),
-        timeout=httpx2.Timeout(timeout_s, connect=min(timeout_s, _CONNECT_S), pool=None),
-        limits=httpx2.Limits(max_connections=None, max_keepalive_connections=20),
-        event_hooks={"request": [_note_request], "response": [_note_response]},
-    )
-
-
-@cache
-def _trusted() -> ssl.SSLContext:
-    """Whom to trust, for all clients: reading the certificates takes longer than a local call."""
-    import httpx2
-
-    return httpx2.create_ssl_context()
-
-
-async def _note_request(request: httpx2.Request) -> None:
-    exchange = _current.get()
-    if exchange is None:
-        return
-    # A scalar time-out, as the libraries send it, would allow as long for the connection alone.
-    timeout = request.extensions.get("timeout")
-    if isinstance(timeout, dict):
-        timeout["connect"] = min(timeout.get("connect") or _CONNECT_S, _CONNECT_S)
-    exchange.sent = _object(request.content)
+    body = read_json(content)
+    exchange.sent = body if isinstance(body, dict) else {}
     sent = sent_settings(exchange.sent)
     exchange.withheld = tuple(name for name in exchange.required if name not in sent)
     if exchange.withheld:
         raise SettingWithheldError
     exchange.requests += 1
     exchange.status, exchange.headers, exchange.text = None, {}, ""
+    exchange.location, exchange.fault = address, ""
     exchange.started_s = time.monotonic()
 
 
-async def _note_response(response: httpx2.Response) -> None:
-    exchange = _current.get()
-    if exchange is None:
-        return
-    await response.aread()
+def note_answer(exchange: Exchange, status: int, headers: Mapping[str, str], body: bytes) -> None:
+    """Note the answer to the last request.
+
+    Args:
+        exchange: Takes it.
+        status: Its HTTP status.
+        headers: Names in lower case.
+        body: All of it, or as much as was read.
+    """
     exchange.seconds = time.monotonic() - exchange.started_s
-    exchange.status, exchange.text = response.status_code, response.text
-    exchange.headers = {name.lower(): value for name, value in response.headers.items()}
+    exchange.status, exchange.headers = status, headers
+    exchange.text = body.decode("utf-8-sig", "replace")
 
 
-def _object(content: bytes) -> Mapping[str, Any]:
-    try:
-        value = json.loads(content)
-    except ValueError:
-        return {}
-    return value if isinstance(value, dict) else {}
+def current_exchange() -> Exchange | None:
+    """Where the current task notes what it sends and gets."""
+    return _current.get()
+
+
+def watch(exchange: Exchange) -> None:
+    """Note what the current task, and the tasks it starts, send and get from here on."""
+    _current.set(exchange)
 
 
 _TOKEN_LIMITS = ("max_tokens", "max_completion_tokens", "max_output_tokens", "maxOutputTokens")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping
 from typing import Any
+from urllib.parse import urljoin
 
 from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.redaction import redacted
@@ -13,6 +14,10 @@ from adamo_vh.inference.remote.retry import Failure
 
 _RETRYABLE_STATUS = frozenset({408, 409, 425, 429})
 _LONGEST_TEXT = 500
+_JUDGED = 20_000
+"""Letters of an error that are looked at: whoever has more to say says it in the first of them."""
+_STATUS = re.compile(r"[45]\d\d", re.ASCII)
+_RETRY_DELAY = re.compile(r"\"retryDelay\": ?\"(\d{1,9}(?:\.\d{1,9})?)s\"")
 
 _FIXES = {
     401: "Check the API key in the environment.",
@@ -32,7 +37,7 @@ _PERMANENT = re.compile(
 
 _TOO_LONG = re.compile(
     r"context[ _](?:length|window|size)|maximum context|prompt is too long|exceed_context"
-    r"|input token count .* exceeds|maximum prompt length",
+    r"|input token count .{0,200}? exceeds|maximum prompt length",
     re.IGNORECASE | re.DOTALL,
 )
 
@@ -59,12 +64,21 @@ def read_exchange(exchange: Exchange) -> Failure | None:
     Returns:
         What is wrong with it; None if it is no plain error.
     """
+    if exchange.fault:
+        return Failure(exchange.fault, False, status=exchange.status)
     if exchange.status is None:
         return None
+    if 300 <= exchange.status < 400:
+        return _redirected(exchange)
     if exchange.status >= 400:
         return _failed(exchange.status, exchange.body or exchange.text, exchange)
     if "event-stream" in exchange.headers.get("content-type", ""):
         return None
+    return _read_body(exchange)
+
+
+def _read_body(exchange: Exchange) -> Failure | None:
+    """What is wrong with the body of an answer under status 200."""
     body = exchange.body
     if not isinstance(body, dict):
         return Failure("The answer is no JSON object.", True)
@@ -76,6 +90,19 @@ def read_exchange(exchange: Exchange) -> Failure | None:
     if "contents" in exchange.sent and not body.get("candidates"):
         return Failure("The answer holds no candidates.", True)
     return None
+
+
+def _redirected(exchange: Exchange) -> Failure:
+    """Redirects are not followed: the key would go where nobody sent it."""
+    target = urljoin(exchange.location, exchange.headers.get("location", ""))
+    for path in _PATHS:
+        target = target.removesuffix(path)
+    text = f"The server redirects to {_short(target).rstrip('.')}; use that address."
+    return Failure(text, False, status=exchange.status)
+
+
+_PATHS = ("/chat/completions", "/responses", "/v1/messages")
+"""What the client libraries put behind an address."""
 
 
 def _hidden_error(body: Mapping[str, Any]) -> Any:
@@ -101,8 +128,8 @@ def _status_of(error: Any) -> int:
     if not isinstance(error, dict):
         return 500
     for value in (error.get("code"), error.get("status")):
-        if str(value).isdigit() and 400 <= int(str(value)) < 600:
-            return int(str(value))
+        if found := _STATUS.fullmatch(str(value)):
+            return int(found[0])
     for name in (str(error.get("type")), str(error.get("code"))):
         if name in _ERROR_STATUS:
             return _ERROR_STATUS[name]
@@ -113,7 +140,7 @@ def _status_of(error: Any) -> int:
 
 def _failed(status: int, body: Any, exchange: Exchange, *, hidden: bool = False) -> Failure:
     words = _server_text(body)
-    everything = f"{words} {body}"
+    everything = f"{words} {exchange.text}"[:_JUDGED]
     told = f"HTTP {exchange.status} with an error" if hidden else f"HTTP {status}"
     text = f"The server answered {told}: {_short(words)}"
     said = _short(words)
@@ -124,7 +151,7 @@ def _failed(status: int, body: Any, exchange: Exchange, *, hidden: bool = False)
         text = f"{text} {fix}"
     final = _PERMANENT.search(everything) or _is_out_of_credit(body, everything)
     retryable = (status in _RETRYABLE_STATUS or status >= 500) and not final
-    waits = _retry_after_s(exchange.headers, body)
+    waits = _retry_after_s(exchange.headers, exchange.text)
     return Failure(text, retryable, waits, status=status, words=said)
 
 
@@ -135,14 +162,14 @@ def _is_out_of_credit(body: Any, everything: str) -> bool:
     return bool(named & {*_NO_CREDIT}) or "PerDay" in everything
 
 
-def _retry_after_s(headers: Mapping[str, str], body: Any) -> float | None:
+def _retry_after_s(headers: Mapping[str, str], text: str) -> float | None:
     """Seconds that the server asked to wait, from a header or from Google's error details."""
     from pydantic_ai.exceptions import ModelHTTPError
 
     asked = ModelHTTPError(429, "", headers=dict(headers)).retry_after
     if asked is not None:
         return asked
-    found = re.search(r"'retryDelay': '(\d+(?:\.\d+)?)s'", str(body))
+    found = _RETRY_DELAY.search(text[:_JUDGED])
     return float(found.group(1)) if found else None
 
 
@@ -162,7 +189,7 @@ def read_error(error: Exception) -> Failure:
 
     if isinstance(error, ModelHTTPError):
         headers = {name.lower(): value for name, value in (error.headers or {}).items()}
-        exchange = Exchange(status=error.status_code, headers=headers)
+        exchange = Exchange(status=error.status_code, headers=headers, text=str(error.body))
         return _failed(error.status_code, error.body, exchange)
     if isinstance(error, ModelConnectionError | ModelRequestTimeout):
         if getattr(error, "phase", None) == "connect":
@@ -207,9 +234,9 @@ def refused_setting(exchange: Exchange, present: Collection[str]) -> str | None:
     if exchange.status == 500:
         # Some servers report as a fault of theirs what a chat template refuses.
         present = {SEVERAL_SYSTEM} & {*present}
-    elif exchange.status not in _COMPLAINT or _TOO_LONG.search(exchange.text):
+    elif exchange.status not in _COMPLAINT or _TOO_LONG.search(exchange.text[:_JUDGED]):
         return None
-    text = _complaint(exchange.body)
+    text = _complaint(exchange.body)[:_JUDGED]
     for name, spelling in _SPELLINGS.items():
         if name in present and re.search(rf"(?<![A-Za-z]){spelling}(?![A-Za-z])", text, re.I):
             return name
@@ -240,6 +267,8 @@ def _server_text(body: object) -> str:
 
 def _short(text: str) -> str:
     """One line without keys; redacted before it is cut, so that no half of a key survives."""
-    text = " ".join(redacted(encodable_text(text)).split())
+    whole = " ".join(encodable_text(text[: 2 * _JUDGED]).split())
+    # A key that the first cut went through is not shown, however few blanks were taken out.
+    text = redacted(whole if len(text) <= 2 * _JUDGED else whole[: _JUDGED // 2])
     text = text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]}..."
     return text if text.endswith((".", "!", "?")) else f"{text}."

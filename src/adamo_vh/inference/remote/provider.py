@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from threading import Lock
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, cast
 
 from adamo_vh.action import ToolSchema
+from adamo_vh.errors import ProviderError
 from adamo_vh.inference.cost.prices import cost_usd
+from adamo_vh.inference.cost.tokens import cut_prompt, filled_usage, rule_for
 from adamo_vh.inference.messages import Message
-from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Rung, Sampling, Usage
+from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Rung, Sampling, Spent, Usage
+from adamo_vh.inference.redaction import clean_message, redacted
 from adamo_vh.inference.remote.background import run_in_background
 from adamo_vh.inference.remote.clients import Connection, connect
+from adamo_vh.inference.remote.counts import counted
 from adamo_vh.inference.remote.endings import refused_call
 from adamo_vh.inference.remote.endpoint import parse_endpoint
-from adamo_vh.inference.remote.exchange import Exchange, sent_settings, watch, watching_client
+from adamo_vh.inference.remote.exchange import Exchange, sent_settings, watch
 from adamo_vh.inference.remote.faults import read_error, read_exchange, refused_setting
 from adamo_vh.inference.remote.replies import Reading, read_refused_call, read_response
-from adamo_vh.inference.remote.retry import Failure, RetryPolicy, run_with_retries
+from adamo_vh.inference.remote.retry import Failure, RetryPolicy, Success, run_with_retries
 from adamo_vh.inference.remote.settings import EXACT, Settings
+from adamo_vh.inference.remote.transport import watching_client
 from adamo_vh.inference.remote.wire import from_usage, to_parameters, to_wire
 
 if TYPE_CHECKING:
@@ -45,6 +51,8 @@ class _Asking:
     """What the last try carried."""
     seconds: float = 0.0
     """How long the last try was on the wire."""
+    lost: Usage = field(default_factory=Usage)
+    """Tokens of answers that could not be used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,26 +165,42 @@ class ProviderModel:
             ProviderError: The request was refused, or failed after all retries.
         """
         asking = _Asking(messages, tools, to_parameters(tools, schema), sampling)
-        answer = run_with_retries(
-            self._retry,
-            self._name,
-            lambda: self._try(asking),
-            adapt=lambda failure: bool(failure.refused),
-        )
+        started = time.monotonic()
+        try:
+            answer = run_with_retries(
+                self._retry,
+                self._name,
+                lambda: self._try(asking),
+                adapt=lambda failure: bool(failure.refused),
+            )
+        except ProviderError as error:
+            cost, waited = self._cost(asking.lost), time.monotonic() - started
+            error.spent = Spent(asking.lost, asking.requests, cost, waited_s=waited)
+            raise
+        return self._reply(answer, asking, tools if schema is None else (*tools, schema))
+
+    def _reply(
+        self, answer: Success[_Answer], asking: _Asking, asked: Sequence[ToolSchema]
+    ) -> Reply:
+        """The reply that an answer comes to, with all that it took."""
         reading, usage = answer.value.reading, answer.value.usage
+        # A server may echo the key that it was sent.
+        message = clean_message(reading.message)
+        usage = filled_usage(usage, asking.messages, asked, message, rule_for(self._name))
         return Reply(
-            reading.message,
-            usage,
+            message,
+            asking.lost + usage,
             # The first use of a library takes seconds to load, which is not the model's time.
             asking.seconds or answer.seconds,
             answer.waited_s,
             requests=asking.requests,
-            cost_usd=cost_usd(self._name, usage),
+            cost_usd=self._cost(asking.lost, usage),
             settings=asking.settings or {},
             rung=Rung.LEAKED if reading.leaked else Rung.NATIVE,
-            unreadable=reading.problem,
+            unreadable=redacted(reading.problem),
             ending=reading.ending,
-            finish_reason=reading.finish_reason,
+            finish_reason=redacted(reading.finish_reason),
+            warning=cut_prompt(usage, asking.messages, asked),
         )
 
     def close(self) -> None:
@@ -193,7 +217,8 @@ class ProviderModel:
         return f"{self._connection.wire}:{self._endpoint.model}"
 
     def _connect(self) -> Connection:
-        self._http = watching_client(self._retry.timeout_s)
+        secure = not (self._endpoint.base_url or "https:").startswith("http:")
+        self._http = watching_client(self._retry.timeout_s, secure=secure)
         return connect(self._endpoint, self._http)
 
     def _try(self, asking: _Asking) -> _Answer | Failure:
@@ -225,16 +250,26 @@ class ProviderModel:
             return _inexact(f"The client library does not send {exchange.withheld[0]}.")
         # What the bytes say goes before what the library made of them.
         failure = read_exchange(exchange)
+        usage = counted(exchange.body) or Usage()
         if failure is None:
+            if isinstance(outcome, Failure):
+                asking.lost += usage
             return outcome
         if refused := refused_call(exchange.body, exchange.text):
             # The server did its work; it was the model that wrote what cannot be read.
-            return _Answer(read_refused_call(*refused, asking.messages, asking.tools), Usage())
+            return _Answer(read_refused_call(*refused, asking.messages, asking.tools), usage)
+        asking.lost += usage
         if asking.sampling.exact and refused_setting(exchange, EXACT):
             return _inexact(failure.text)
         return replace(
             failure, refused=self._settings.take_refusal(exchange, settings, asking.sampling)
         )
+
+    def _cost(self, *usages: Usage) -> float | None:
+        """What requests cost; each by itself, since long ones may cost more."""
+        costs = [cost_usd(self._name, usage) for usage in usages]
+        known = [cost for cost in costs if cost is not None]
+        return sum(known) if len(known) == len(costs) else None
 
     def _read(self, response: ModelResponse, exchange: Exchange, asking: _Asking) -> _Answer:
         reading = read_response(
@@ -245,7 +280,7 @@ class ProviderModel:
             self._source,
             takes_thinking=self._connection.takes_thinking,
         )
-        return _Answer(reading, from_usage(response.usage))
+        return _Answer(reading, counted(exchange.body) or from_usage(response.usage))
 
     async def _request(
         self,
