@@ -136,7 +136,7 @@ def oracle_actions(engine: World, task: Task) -> list[Action]:
     """What the oracle does, played once without pictures of any size that matters."""
     engine.reset(0)
     server = LocalActionServer(engine, perception=PerceptionConfig(grid=0), resolution=(1920, 1080))
-    oracle = Oracle(task.conditions, server.tag)
+    oracle = Oracle(task.conditions, server.tag, server.body.info)
     actions: list[Action] = []
     server.observe()
     while (action := oracle.next_action(engine.state(), server.seen)) is not None:

@@ -9,10 +9,11 @@ import math
 from dataclasses import replace
 
 from adamo_vh.action import Drop, Look, Pick, Walk
-from adamo_vh.engine import FLOOR, Area, ObjectState, SceneInfo, WorldState
+from adamo_vh.engine import FLOOR, Area, BodyInfo, ObjectState, SceneInfo, WorldState
 from adamo_vh.geometry import Box, Quaternion, Vec3
 from adamo_vh.observation import BodyState
 
+BODY = BodyInfo("mara", 0.25, 1.6, math.radians(74), 0.9, 2.07, 0.5)
 TABLE = "table"
 TABLE_TOP_M = 0.78
 TABLE_X = (-0.575, 0.475)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo_vh.geometry import Box, Camera, Quaternion, Vec3, wrap_angle
+from adamo_vh.geometry import Box, Camera, Quaternion, Vec3, hull, wrap_angle
 
 angles = st.floats(-math.pi, math.pi)
 coordinates = st.floats(-5, 5)
@@ -68,3 +68,27 @@ def test_wrapped_angles_are_the_same_direction(angle: float) -> None:
 
 def test_rounded_points_have_no_negative_zero() -> None:
     assert str(Vec3(-0.0004, 0, 0).rounded(2).x) == "0.0"
+
+
+@given(st.lists(st.tuples(st.integers(-5, 5), st.integers(-5, 5)), min_size=3, max_size=30))
+def test_a_hull_holds_all_points_and_turns_left_at_every_corner(
+    points: list[tuple[float, float]],
+) -> None:
+    corners = hull(points)
+    assert set(corners) <= set(points)
+    if len(corners) < 3:
+        return
+    for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
+        for x, y in points:
+            assert (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) >= 0
+
+
+@given(points, st.integers(0, 4))
+def test_a_point_is_told_in_one_way_and_never_as_minus_zero(point: Vec3, digits: int) -> None:
+    parts = point.text(digits).strip("()").split(", ")
+    numbers = [float(part) for part in parts]
+    assert numbers == pytest.approx([point.x, point.y, point.z], abs=0.51 * 10**-digits)
+    assert not any(
+        number == 0 and part.startswith("-") for number, part in zip(numbers, parts, strict=False)
+    )
+    assert str(Vec3(-0.001, -0.0, -0.004)) == "(0.00, 0.00, 0.00)"

@@ -1,4 +1,4 @@
-"""Points, poses, boxes and the camera, in the one world frame.
+"""Points, poses, boxes, outlines and the camera, in the one world frame.
 
 World frame: right-handed, metres, X right, Y forward at yaw 90 degrees, Z up, floor at z = 0.
 Angles are radians, counter-clockwise seen from above; yaw 0 faces +X. Pixels: origin top left,
@@ -8,12 +8,15 @@ u to the right, v down, pixel centres at half integers.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Plan = tuple[float, float]
+"""x and y of a point seen from above."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +148,61 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True)
+class Solid:
+    """An upright prism over an oriented rectangle: how placement and navigation see things."""
+
+    x: float
+    y: float
+    half_x: float
+    half_y: float
+    yaw_rad: float
+    z_min: float
+    z_max: float
+
+    @classmethod
+    def around(cls, box: Box) -> Solid:
+        """The prism that holds an oriented box, aligned with its heading."""
+        yaw = box.orientation.yaw_rad
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        corners = box.corners()
+        offset = corners[:, :2] - [box.center.x, box.center.y]
+        along, across = offset @ [cos, sin], offset @ [-sin, cos]
+        return cls(
+            box.center.x,
+            box.center.y,
+            float(np.abs(along).max()),
+            float(np.abs(across).max()),
+            yaw,
+            float(corners[:, 2].min()),
+            float(corners[:, 2].max()),
+        )
+
+    def distance(self, points: Array) -> Array:
+        """Horizontal distance of points from the rectangle; 0 inside.
+
+        Args:
+            points: (N, 2) metres.
+
+        Returns:
+            (N,) metres.
+        """
+        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        offset = points - np.array([self.x, self.y])
+        along = np.abs(offset @ [cos, sin]) - self.half_x
+        across = np.abs(offset @ [-sin, cos]) - self.half_y
+        return np.asarray(np.hypot(np.maximum(along, 0), np.maximum(across, 0)))
+
+    def overlaps_height(self, z_min: float, z_max: float) -> bool:
+        """Whether the height ranges share more than 2 mm."""
+        return self.z_min < z_max - 0.002 and self.z_max > z_min + 0.002
+
+    @property
+    def radius_m(self) -> float:
+        """Radius of the upright cylinder around the centre that holds the prism, metres."""
+        return math.hypot(self.half_x, self.half_y)
+
+
+@dataclass(frozen=True, slots=True)
 class Camera:
     """A pinhole camera without roll."""
 
@@ -237,3 +295,59 @@ class Camera:
 def wrap_angle(angle_rad: float) -> float:
     """The same angle in (-pi, pi]."""
     return math.pi - (math.pi - angle_rad) % (2 * math.pi)
+
+
+def gaps(candidates: Array, shape: Solid, obstacles: Sequence[Solid]) -> Array:
+    """How far a rectangle stays from obstacles when its centre is put at each candidate.
+
+    The separating axis test on both rectangles' axes: positive values are lower bounds of the gap,
+    negative ones mean overlap.
+
+    Args:
+        candidates: (N, 2) centres in metres.
+        shape: The rectangle to place; its own position does not matter.
+        obstacles: What to stay clear of.
+
+    Returns:
+        (N,) metres; infinity where there are no obstacles.
+    """
+    smallest = np.full(len(candidates), np.inf)
+    own = _heading_axes(shape.yaw_rad)
+    for other in obstacles:
+        theirs = _heading_axes(other.yaw_rad)
+        axes = np.concatenate([own, theirs])
+        extent = np.abs(axes @ own.T) @ [shape.half_x, shape.half_y]
+        extent = extent + np.abs(axes @ theirs.T) @ [other.half_x, other.half_y]
+        offset = candidates - np.array([other.x, other.y])
+        apart = (np.abs(offset @ axes.T) - extent).max(axis=1)
+        smallest = np.minimum(smallest, apart)
+    return smallest
+
+
+def _heading_axes(yaw_rad: float) -> Array:
+    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
+    return np.array([[cos, sin], [-sin, cos]])
+
+
+def hull(points: Iterable[Plan]) -> list[Plan]:
+    """Convex hull of points of a plane by monotone chains.
+
+    Returns:
+        Its corners, counter-clockwise where x goes right and y up; all points, if they are on one
+        line.
+    """
+    ordered = sorted(set(points))
+
+    def chain(way: Iterable[Plan]) -> list[Plan]:
+        kept: list[Plan] = []
+        for point in way:
+            while len(kept) > 1 and _turn(kept[-2], kept[-1], point) <= 0:
+                kept.pop()
+            kept.append(point)
+        return kept[:-1]
+
+    return [*chain(ordered), *chain(reversed(ordered))] or ordered
+
+
+def _turn(a: Plan, b: Plan, c: Plan) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from tests.tabletop import OBJECTS, carried_out, held, resting, tabletop
+from tests.tabletop import BODY, OBJECTS, carried_out, held, resting, tabletop
 
 from adamo_vh.action import Drop, Look, Pick, Walk
 from adamo_vh.benchmark.checkers import Score, score
@@ -135,7 +135,7 @@ def play(
     """
     state, actions = tabletop(), list[Look | Walk | Pick | Drop]()
     known = set(OBJECTS) if seen is None else set(seen)
-    oracle = Oracle(conditions, str)
+    oracle = Oracle(conditions, str, BODY)
     while (action := oracle.next_action(state, known)) is not None:
         assert len(actions) < STEP_CAP
         if isinstance(action, Pick):
@@ -243,7 +243,7 @@ def test_the_oracle_walks_to_see_what_is_hidden(item: Task) -> None:
 
 
 def test_the_oracle_gives_up_what_never_comes_into_view() -> None:
-    oracle, state = Oracle((Holds(34),), str), tabletop()
+    oracle, state = Oracle((Holds(34),), str, BODY), tabletop()
     actions = []
     while (action := oracle.next_action(state, set())) is not None:
         actions.append(action)
@@ -253,7 +253,7 @@ def test_the_oracle_gives_up_what_never_comes_into_view() -> None:
 
 
 def test_the_oracle_tries_another_spot_when_a_drop_was_refused() -> None:
-    state, oracle = held(tabletop(), 57), Oracle((OnFloor(57),), str)
+    state, oracle = held(tabletop(), 57), Oracle((OnFloor(57),), str, BODY)
     drops = [oracle.next_action(state, {57}) for _ in range(4)]
     spots = [(drop.x, drop.y, drop.z) for drop in drops if isinstance(drop, Drop)]
     assert len(set(spots)) == len(drops)
@@ -261,7 +261,7 @@ def test_the_oracle_tries_another_spot_when_a_drop_was_refused() -> None:
 
 
 def test_the_oracle_takes_back_what_was_corrected_to_a_wrong_place() -> None:
-    start, oracle = tabletop(), Oracle((Near(37, 57),), str)
+    start, oracle = tabletop(), Oracle((Near(37, 57),), str, BODY)
     drop = oracle.next_action(held(start, 37), {37})
     corrected = resting(start, 37, -0.424, -1.0, support="table")
     assert isinstance(drop, Drop)
@@ -272,13 +272,13 @@ def test_the_oracle_takes_back_what_was_corrected_to_a_wrong_place() -> None:
 
 
 def test_the_oracle_empties_a_wrong_hand_first() -> None:
-    action = Oracle((Holds(57),), str).next_action(held(tabletop(), 34), set(OBJECTS))
+    action = Oracle((Holds(57),), str, BODY).next_action(held(tabletop(), 34), set(OBJECTS))
     assert isinstance(action, Drop)
     assert action.object == "34"
 
 
 def test_the_oracle_calls_objects_by_the_tags_of_the_labeling() -> None:
-    oracle = Oracle((Holds(57),), lambda object_id: f"Plate_{object_id}")
+    oracle = Oracle((Holds(57),), lambda object_id: f"Plate_{object_id}", BODY)
     assert oracle.next_action(tabletop(), {57}) == Pick("Plate_57")
 
 

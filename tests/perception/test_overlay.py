@@ -23,6 +23,11 @@ from adamo_vh.perception.visibility import visible_objects
 SIZES = [(640, 360), (1280, 720), (1920, 1080)]
 
 
+def no_clutter(width_px: int, height_px: int) -> Clutter:
+    """A picture without objects."""
+    return Clutter.of([ids(width_px, height_px, {})], ())
+
+
 def apart(a, b):
     return a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
 
@@ -93,8 +98,8 @@ def test_tiny_pictures_drop_tags_but_never_stack_them(size, count, data):
         tag_size = (data.draw(st.integers(8, 40)), data.draw(st.integers(6, 16)))
         is_object = number < count // 2
         requests.append(TagRequest(str(number), (left, top, right, bottom), tag_size, is_object))
-    placed = place_tags(width, height, requests, Clutter.empty(width, height))
-    assert placed == place_tags(width, height, requests, Clutter.empty(width, height))
+    placed = place_tags(width, height, requests, no_clutter(width, height))
+    assert placed == place_tags(width, height, requests, no_clutter(width, height))
     for one, other in combinations(placed, 2):
         assert apart(one.rect, other.rect)
     for tag in placed:
@@ -109,7 +114,7 @@ def test_tiny_pictures_drop_tags_but_never_stack_them(size, count, data):
 def test_a_later_tag_never_costs_an_earlier_one_its_place():
     first = [TagRequest(f"A{i}", (10 * i, 30, 10 * i + 8, 38), (30, 12), True) for i in range(8)]
     later = [TagRequest(f"P{i}", (10 * i, 10, 10 * i + 1, 11), (14, 10), False) for i in range(9)]
-    clutter = Clutter.empty(90, 60)
+    clutter = no_clutter(90, 60)
     alone = place_tags(90, 60, first, clutter)
     assert place_tags(90, 60, first + later, clutter)[: len(alone)] == alone
 
@@ -123,7 +128,7 @@ def test_an_object_that_fills_the_picture_still_has_its_tag():
 
 def test_a_lone_tag_stands_on_its_box_without_a_leader():
     request = TagRequest("Cup_45", (300, 200, 380, 260), (60, 18), True)
-    (placed,) = place_tags(640, 360, [request], Clutter.empty(640, 360))
+    (placed,) = place_tags(640, 360, [request], no_clutter(640, 360))
     assert placed.rect == (300, 182, 360, 200)
     assert placed.leader is None
 
@@ -131,7 +136,7 @@ def test_a_lone_tag_stands_on_its_box_without_a_leader():
 def test_a_tag_that_was_moved_away_is_led_back():
     walls = [TagRequest(f"W{i}", (0, 20 * i, 640, 20 * i + 20), (640, 20), True) for i in range(18)]
     middle = TagRequest("Key_34", (320, 175, 324, 179), (60, 18), True)
-    placed = place_tags(640, 360, [*walls[:8], middle], Clutter.empty(640, 360))
+    placed = place_tags(640, 360, [*walls[:8], middle], no_clutter(640, 360))
     key = placed[-1]
     assert key.leader is not None
     (_, (u, v)) = key.leader
@@ -234,7 +239,7 @@ def test_the_camera_has_no_part_in_the_layout():
     """Points are where they are told to be, at the middle of their crosses."""
     points = reference_points(camera(640, 360), sphere_hits, 2)
     blank = np.zeros((360, 640, 3), dtype=np.uint8)
-    frame = draw_overlay(blank, [], points, Clutter.empty(640, 360), ImageFormat.PNG)
+    frame = draw_overlay(blank, [], points, no_clutter(640, 360), ImageFormat.PNG)
     picture = np.asarray(Image.open(io.BytesIO(frame.data)))
     for point in points:
         assert tuple(picture[int(point.pixel[1]), int(point.pixel[0])]) == (255, 255, 255)

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from adamo_vh.engine import SceneInfo
-from adamo_vh.geometry import Vec3
+from adamo_vh.geometry import Solid, Vec3
 from adamo_vh.runtime.navigation import BODY_RADIUS_M, FloorMap
-from adamo_vh.runtime.solids import Solid, Solids
+from adamo_vh.runtime.solids import Solids
 
 ROOM = SceneInfo("room", -3, -5, 3, 3, 3.2, ())
 TABLE = Solid(-0.05, -1.0, 0.525, 0.83, 0.0, 0.0, 0.78)

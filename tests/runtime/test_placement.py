@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo_vh.geometry import Vec3
+from adamo_vh.geometry import Solid, Vec3, gaps
 from adamo_vh.runtime.placement import CLEARANCE_M, MAX_CORRECTION_M, free_spots, spread
-from adamo_vh.runtime.solids import Solid, gaps
 from adamo_vh.runtime.world import WorldSurface
 
 TABLE = WorldSurface("table", Vec3(0, 0, 0.78), 0.5, 0.8, 0.0)
@@ -36,7 +36,13 @@ def test_spots_are_clear_of_everything(x: float, y: float, yaw: float, beside: l
     assert distances == sorted(distances)
     assert all(d <= MAX_CORRECTION_M for d in distances)
     for spot in list(spread(spots))[:10]:
-        put = shape.moved(spot.center.x, spot.center.y, spot.center.z - 0.065)
+        put = replace(
+            shape,
+            x=spot.center.x,
+            y=spot.center.y,
+            z_min=spot.center.z - 0.065,
+            z_max=spot.center.z - 0.065 + shape.z_max - shape.z_min,
+        )
         near = [s for s in beside if s.overlaps_height(put.z_min, put.z_max)]
         at = np.array([[put.x, put.y]])
         assert gaps(at, put, near)[0] >= CLEARANCE_M - 1e-9

@@ -33,7 +33,7 @@ def oracle_steps(engine: BuiltinEngine, task: str) -> list[Step]:
     engine.reset(0)
     perception = PerceptionConfig(labeling=Labeling.SEM)
     server = LocalActionServer(engine, perception=perception, resolution=SIZE)
-    oracle = Oracle(find_task(task).conditions, server.tag)
+    oracle = Oracle(find_task(task).conditions, server.tag, server.body.info)
     server.observe()
     steps: list[Step] = []
     while (action := oracle.next_action(engine.state(), server.seen)) is not None:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Container, Iterator, Sequence
 from adamo_vh.action import Drop, Look, Pick, Walk
 from adamo_vh.benchmark.conditions import Condition, Holds, InArea, Near, OnFloor
 from adamo_vh.benchmark.spots import area_spots, floor_spots, near_spots
-from adamo_vh.engine import ObjectState, WorldState
+from adamo_vh.engine import BodyInfo, ObjectState, WorldState
 from adamo_vh.geometry import Vec3
 
 PATIENCE = 14
@@ -42,13 +42,17 @@ def first_half(conditions: Sequence[Condition]) -> tuple[Condition, ...]:
 class Oracle:
     """Plays towards conditions, in their order."""
 
-    def __init__(self, conditions: Sequence[Condition], tag_of: Callable[[int], str]) -> None:
+    def __init__(
+        self, conditions: Sequence[Condition], tag_of: Callable[[int], str], body: BodyInfo
+    ) -> None:
         """Prepare to play one episode.
 
         Args:
             conditions: What to bring about, e.g. `task.conditions` or `first_half` of them.
             tag_of: The tag of an object id under the labeling in use.
+            body: How large the body is and how far it reaches.
         """
+        self._body = body
         self._conditions = tuple(conditions)
         self._tag_of = tag_of
         self._spent: Counter[Condition] = Counter()
@@ -120,7 +124,7 @@ class Oracle:
             case InArea(kind=kind):
                 return area_spots(state, item, kind)
             case OnFloor():
-                return floor_spots(state, item, self._visited)
+                return floor_spots(state, item, self._visited, self._body)
             case Holds():
                 return []
 

@@ -12,12 +12,11 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo_vh.engine import ObjectState, WorldState
-from adamo_vh.geometry import Array, Box, Vec3
+from adamo_vh.engine import BodyInfo, ObjectState, WorldState
+from adamo_vh.geometry import Array, Solid, Vec3, gaps
 
-BODY_RADIUS_M = 0.25
-REACH_M = 0.85
-"""A little less than the arm's reach, so that the body need not walk."""
+_WITHIN_REACH_M = 0.05
+"""So much less than the arm's reach, so that the body need not walk."""
 FREE_M = 0.015
 """A gap to the neighbours beyond which more is no better."""
 NEAR_MAX_M = 0.26
@@ -40,16 +39,18 @@ def near_spots(state: WorldState, item: ObjectState, anchor: ObjectState) -> lis
     center, surface_z = _plan(anchor.box.center), anchor.box.bottom_z
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     points = center + directions * distances[:, None]
-    gaps = _gaps(points, state, item, surface_z)
+    apart = _gaps(points, state, item, surface_z)
     others = [_plan(o.box.center) for o in state.objects if o.support == anchor.support]
     facing = np.abs(directions @ _unit(_plan(state.body.position) - center))
     inward = directions @ _unit(np.mean(others, axis=0) - center)
     risk = np.round(4 * (facing - _INWARD_WEIGHT * inward))
-    order = np.lexsort((distances, risk, -np.minimum(gaps, FREE_M)))
-    return [_point(points[i], surface_z) for i in order if gaps[i] > 0]
+    order = np.lexsort((distances, risk, -np.minimum(apart, FREE_M)))
+    return [_point(points[i], surface_z) for i in order if apart[i] > 0]
 
 
-def floor_spots(state: WorldState, item: ObjectState, visited: Iterable[Vec3]) -> list[Vec3]:
+def floor_spots(
+    state: WorldState, item: ObjectState, visited: Iterable[Vec3], body: BodyInfo
+) -> list[Vec3]:
     """Spots on open floor within reach: behind the body, away from the furniture that it faces.
 
     Args:
@@ -57,9 +58,12 @@ def floor_spots(state: WorldState, item: ObjectState, visited: Iterable[Vec3]) -
         item: The object to be put down.
         visited: Places where the body has stood, so surely open floor; they come last, because
             the body may have to walk to them.
+        body: How large the body is and how far it reaches.
     """
-    clear_m = BODY_RADIUS_M + item.box.radius_m + _WALL_GAP_M
-    turns, distances = _polar(np.arange(0.0, 121.0, 15.0), np.arange(clear_m, REACH_M, 0.08))
+    clear_m = body.radius_m + item.box.radius_m + _WALL_GAP_M
+    turns, distances = _polar(
+        np.arange(0.0, 121.0, 15.0), np.arange(clear_m, body.reach_m - _WITHIN_REACH_M, 0.08)
+    )
     turns, distances = np.concatenate([turns, -turns]), np.tile(distances, 2)
     angles = state.body.heading_rad + math.pi + turns
     here = _plan(state.body.position)
@@ -96,28 +100,16 @@ def _gaps(points: Array, state: WorldState, item: ObjectState, surface_z: float)
 
     Separating axes of both headings: positive values are lower bounds, negative ones overlap.
     """
-    gaps = np.full(len(points), np.inf)
     top_z = surface_z + item.box.top_z - item.box.bottom_z
-    for other in state.objects:
-        box = other.box
-        if other.id == item.id or other.held or box.bottom_z > top_z or box.top_z < surface_z:
-            continue
-        axes = np.concatenate([_heading_axes(item.box), _heading_axes(box)])
-        offset = np.abs((points - _plan(box.center)) @ axes.T)
-        apart = offset - _half_extent(item.box, axes) - _half_extent(box, axes)
-        gaps = np.minimum(gaps, apart.max(axis=1))
-    return gaps
-
-
-def _heading_axes(box: Box) -> Array:
-    """Unit vectors (2, 2) in plan along and across a box's heading."""
-    cos, sin = math.cos(box.orientation.yaw_rad), math.sin(box.orientation.yaw_rad)
-    return np.array([[cos, sin], [-sin, cos]])
-
-
-def _half_extent(box: Box, axes: Array) -> Array:
-    """How far (N,) a box reaches from its centre along axes (N, 2) in plan, metres."""
-    return np.asarray(np.abs((box.corners()[:, :2] - _plan(box.center)) @ axes.T).max(axis=0))
+    beside = [
+        Solid.around(other.box)
+        for other in state.objects
+        if other.id != item.id
+        and not other.held
+        and other.box.bottom_z <= top_z
+        and other.box.top_z >= surface_z
+    ]
+    return gaps(points, Solid.around(item.box), beside)
 
 
 def _inside(points: Array, state: WorldState, item: ObjectState) -> NDArray[np.bool_]:

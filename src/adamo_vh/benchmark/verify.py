@@ -73,7 +73,7 @@ def play_oracle(engine: World, labeling: Tagger, task: Task, goals: Sequence[Con
         perception=PerceptionConfig(labeling=labeling, grid=0),
         resolution=_RESOLUTION,
     )
-    oracle = Oracle(goals, server.tag)
+    oracle = Oracle(goals, server.tag, server.body.info)
     server.observe()
     for _ in range(MAX_STEPS):
         action = oracle.next_action(engine.state(), server.seen)

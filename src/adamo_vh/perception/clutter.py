@@ -27,12 +27,6 @@ class Clutter:
     """(rows + 1, columns + 1) sums over all cells above and left."""
 
     @classmethod
-    def empty(cls, width_px: int, height_px: int) -> Clutter:
-        """A picture without objects."""
-        cell = _cell_px(height_px)
-        return cls(cell, np.zeros((-(-height_px // cell) + 1, -(-width_px // cell) + 1)))
-
-    @classmethod
     def of(
         cls, id_layers: Sequence[NDArray[np.int16]], visible: Sequence[VisibleObject]
     ) -> Clutter:

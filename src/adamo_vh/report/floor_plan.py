@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from adamo_vh.benchmark.checkers import MOVED_M
 from adamo_vh.engine import FLOOR, ObjectState, SceneInfo, WorldState, supporting_object
-from adamo_vh.geometry import Box, Vec3
+from adamo_vh.geometry import Box, Plan, Vec3, hull
 from adamo_vh.observation import AgentState, BodyState
 from adamo_vh.perception import Labeling
 from adamo_vh.report.map_labels import Ground, Label, Wish, placed
@@ -29,7 +29,6 @@ _SAME_PLACE_M = 0.05
 _OVERHEAD_M = 1.9
 """What begins higher hangs over the floor."""
 _ON_THE_WALL_M = 0.5
-_Plan = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +51,7 @@ class Move:
     """An object that ended elsewhere than it began."""
 
     title: str
-    start: _Plan
+    start: Plan
     outline: Outline
     """Where it ended; its label is the name."""
 
@@ -67,7 +66,7 @@ class Pose:
     y: float
     heading_deg: float
     """Clockwise from +X, as SVG turns."""
-    gaze: _Plan
+    gaze: Plan
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +178,7 @@ def floor_plan(
     )
 
 
-def _view(scene: SceneInfo, way: Sequence[_Plan], things: Sequence[Outline]) -> View:
+def _view(scene: SceneInfo, way: Sequence[Plan], things: Sequence[Outline]) -> View:
     """What is drawn: all that is there and all that happened, with some floor around it."""
     corners = [tuple(map(float, p.split(","))) for item in things for p in item.points.split()]
     xs, ys = zip(*(corners or [(scene.x_min, -scene.y_max)]), *way, strict=True)
@@ -190,7 +189,7 @@ def _view(scene: SceneInfo, way: Sequence[_Plan], things: Sequence[Outline]) -> 
     return View(*(round(value, 3) for value in (left, top, right - left, bottom - top)))
 
 
-def _ground(view: View, way: Sequence[_Plan], objects: Sequence[Outline]) -> Ground:
+def _ground(view: View, way: Sequence[Plan], objects: Sequence[Outline]) -> Ground:
     """What labels stand on: they had better not cover stops, ways and things."""
     busy = [(item.x, item.y) for item in objects] + [stop for stop in way for _ in range(4)]
     for (ax, ay), (bx, by) in pairwise(way):
@@ -271,11 +270,11 @@ def _areas(scene: SceneInfo) -> tuple[Outline, ...]:
 
 
 def _surfaces(objects: Iterable[ObjectState]) -> tuple[Outline, ...]:
-    groups: dict[str, list[_Plan]] = {}
+    groups: dict[str, list[Plan]] = {}
     for item in objects:
         if item.support and item.support != FLOOR and supporting_object(item.support) is None:
             groups.setdefault(item.support, []).extend(_corners(item.box))
-    return tuple(_outline(name, f"on {name}", _hull(points)) for name, points in groups.items())
+    return tuple(_outline(name, f"on {name}", hull(points)) for name, points in groups.items())
 
 
 def _moves(initial: WorldState, final: WorldState) -> tuple[Move, ...]:
@@ -338,10 +337,10 @@ def _pose(anchor: str, agent: AgentState) -> Pose:
 
 
 def _footprint(item: ObjectState, label: str = "") -> Outline:
-    return _outline(label or str(item.id), _name(item), _hull(_corners(item.box)))
+    return _outline(label or str(item.id), _name(item), hull(_corners(item.box)))
 
 
-def _outline(label: str, title: str, points: Sequence[_Plan], kind: str = "") -> Outline:
+def _outline(label: str, title: str, points: Sequence[Plan], kind: str = "") -> Outline:
     """A polygon, with its label in the middle of its extent."""
     xs, ys = [p[0] for p in points], [p[1] for p in points]
     x, y = (min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2
@@ -350,34 +349,15 @@ def _outline(label: str, title: str, points: Sequence[_Plan], kind: str = "") ->
     return Outline(label, title, round(x, 3), round(y, 3), _points(points), kind, area)
 
 
-def _corners(box: Box) -> list[_Plan]:
+def _corners(box: Box) -> list[Plan]:
     return [(float(x), -float(y)) for x, y, _ in box.corners()]
 
 
-def _hull(points: Iterable[_Plan]) -> list[_Plan]:
-    """Convex hull by monotone chains."""
-    ordered = sorted(set(points))
-
-    def chain(way: Iterable[_Plan]) -> list[_Plan]:
-        kept: list[_Plan] = []
-        for p in way:
-            while len(kept) > 1 and _turn(kept[-2], kept[-1], p) <= 0:
-                kept.pop()
-            kept.append(p)
-        return kept[:-1]
-
-    return [*chain(ordered), *chain(reversed(ordered))] or ordered
-
-
-def _turn(a: _Plan, b: _Plan, c: _Plan) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _plan(point: Vec3) -> _Plan:
+def _plan(point: Vec3) -> Plan:
     return round(point.x, 3), round(-point.y, 3) + 0.0
 
 
-def _points(points: Iterable[_Plan]) -> str:
+def _points(points: Iterable[Plan]) -> str:
     return " ".join(f"{x:.3f},{y:.3f}" for x, y in points)
 
 

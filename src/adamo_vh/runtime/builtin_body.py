@@ -9,14 +9,13 @@ from functools import partial
 
 from adamo_vh.action import Code, Outcome
 from adamo_vh.engine import BodyInfo, BodyReport, SceneInfo
-from adamo_vh.geometry import Array, Vec3
+from adamo_vh.geometry import Array, Solid, Vec3
 from adamo_vh.observation import BodyState, Percept
 from adamo_vh.runtime import physics
 from adamo_vh.runtime.embodiment import EYE_HEIGHT_M, FOV_Y_RAD, REACH_M, REACH_TOP_M, Stance
 from adamo_vh.runtime.human.motion import drop_motion, look_motion, pick_motion, walk_motion
 from adamo_vh.runtime.navigation import BODY_RADIUS_M, FloorMap, Path, Ways
 from adamo_vh.runtime.placement import MAX_CORRECTION_M, Spot, free_spots, spread
-from adamo_vh.runtime.solids import Solid
 from adamo_vh.runtime.stage import Stage
 from adamo_vh.runtime.turns import Turns, in_turn
 from adamo_vh.runtime.world import CompiledWorld

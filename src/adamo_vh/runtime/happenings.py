@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from adamo_vh.engine import LightChanged, ObjectAdded, ObjectMoved, ObjectTaken, WorldEvent
 from adamo_vh.errors import EngineError
-from adamo_vh.geometry import Vec3
+from adamo_vh.geometry import Solid, Vec3
 from adamo_vh.runtime import physics
 from adamo_vh.runtime.builtin_body import BuiltinBody
 from adamo_vh.runtime.navigation import BODY_HEIGHT_M, BODY_RADIUS_M
 from adamo_vh.runtime.placement import MAX_CORRECTION_M, free_spots
-from adamo_vh.runtime.solids import Solid
 from adamo_vh.runtime.world import CompiledWorld, WorldObject, light_colour
 
 _AWAY = Vec3(0.0, 0.0, -40.0)

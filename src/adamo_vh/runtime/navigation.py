@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.engine import SceneInfo
-from adamo_vh.geometry import Array, Vec3
-from adamo_vh.runtime.solids import Solid, Solids
+from adamo_vh.geometry import Array, Solid, Vec3
+from adamo_vh.runtime.solids import Solids
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

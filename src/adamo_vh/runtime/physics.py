@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from adamo_vh.engine import FLOOR, object_support
-from adamo_vh.geometry import Array, Vec3
-from adamo_vh.runtime.solids import Solid, Solids
+from adamo_vh.geometry import Array, Solid, Vec3
+from adamo_vh.runtime.solids import Solids
 from adamo_vh.runtime.world import CompiledWorld, WorldObject
 
 if TYPE_CHECKING:

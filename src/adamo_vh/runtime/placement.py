@@ -10,8 +10,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo_vh.geometry import Array, Vec3
-from adamo_vh.runtime.solids import Solid, gaps
+from adamo_vh.geometry import Array, Solid, Vec3, gaps
 from adamo_vh.runtime.world import WorldSurface
 
 CLEARANCE_M = 0.010

@@ -1,4 +1,4 @@
-"""Plan-view geometry: oriented rectangles with a height range, their distances and overlaps."""
+"""Many prisms at once: how far points are from a room's furniture, and what lines it blocks."""
 
 from __future__ import annotations
 
@@ -9,67 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo_vh.geometry import Array, Box, Vec3
-
-
-@dataclass(frozen=True, slots=True)
-class Solid:
-    """An upright prism over an oriented rectangle: how placement and navigation see things."""
-
-    x: float
-    y: float
-    half_x: float
-    half_y: float
-    yaw_rad: float
-    z_min: float
-    z_max: float
-
-    @classmethod
-    def around(cls, box: Box) -> Solid:
-        """The prism that holds an oriented box, aligned with its heading."""
-        yaw = box.orientation.yaw_rad
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        corners = box.corners()
-        offset = corners[:, :2] - [box.center.x, box.center.y]
-        along, across = offset @ [cos, sin], offset @ [-sin, cos]
-        return cls(
-            box.center.x,
-            box.center.y,
-            float(np.abs(along).max()),
-            float(np.abs(across).max()),
-            yaw,
-            float(corners[:, 2].min()),
-            float(corners[:, 2].max()),
-        )
-
-    def moved(self, x: float, y: float, z_min: float) -> Solid:
-        """The same prism with its centre at another place and its bottom at `z_min`."""
-        height = self.z_max - self.z_min
-        return Solid(x, y, self.half_x, self.half_y, self.yaw_rad, z_min, z_min + height)
-
-    def distance(self, points: Array) -> Array:
-        """Horizontal distance of points from the rectangle; 0 inside.
-
-        Args:
-            points: (N, 2) metres.
-
-        Returns:
-            (N,) metres.
-        """
-        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
-        offset = points - np.array([self.x, self.y])
-        along = np.abs(offset @ [cos, sin]) - self.half_x
-        across = np.abs(offset @ [-sin, cos]) - self.half_y
-        return np.asarray(np.hypot(np.maximum(along, 0), np.maximum(across, 0)))
-
-    def overlaps_height(self, z_min: float, z_max: float) -> bool:
-        """Whether the height ranges share more than 2 mm."""
-        return self.z_min < z_max - 0.002 and self.z_max > z_min + 0.002
-
-    @property
-    def radius_m(self) -> float:
-        """Radius of the upright cylinder around the centre that holds the prism, metres."""
-        return math.hypot(self.half_x, self.half_y)
+from adamo_vh.geometry import Array, Solid, Vec3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -158,35 +98,3 @@ def outline(points: Array, directions: int = 32) -> Array:
     corners = points[farthest]
     apart = np.abs(corners - np.roll(corners, 1, axis=0)) > 1e-6
     return np.asarray(corners[apart.any(axis=1)])
-
-
-def gaps(candidates: Array, shape: Solid, obstacles: list[Solid]) -> Array:
-    """How far a rectangle stays from obstacles when its centre is put at each candidate.
-
-    The separating axis test on both rectangles' axes: positive values are lower bounds of the gap,
-    negative ones mean overlap.
-
-    Args:
-        candidates: (N, 2) centres in metres.
-        shape: The rectangle to place; its own position does not matter.
-        obstacles: What to stay clear of.
-
-    Returns:
-        (N,) metres; infinity where there are no obstacles.
-    """
-    smallest = np.full(len(candidates), np.inf)
-    own = _axes(shape.yaw_rad)
-    for other in obstacles:
-        theirs = _axes(other.yaw_rad)
-        axes = np.concatenate([own, theirs])
-        extent = np.abs(axes @ own.T) @ [shape.half_x, shape.half_y]
-        extent = extent + np.abs(axes @ theirs.T) @ [other.half_x, other.half_y]
-        offset = candidates - np.array([other.x, other.y])
-        apart = (np.abs(offset @ axes.T) - extent).max(axis=1)
-        smallest = np.minimum(smallest, apart)
-    return smallest
-
-
-def _axes(yaw_rad: float) -> NDArray[np.float64]:
-    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
-    return np.array([[cos, sin], [-sin, cos]])

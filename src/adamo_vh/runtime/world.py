@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.engine import FLOOR, FurnitureOutline
-from adamo_vh.geometry import Box, Quaternion, Vec3
+from adamo_vh.geometry import Box, Quaternion, Solid, Vec3
 from adamo_vh.observation import NOTHING
 from adamo_vh.runtime.assets.asset import Asset, Collider
 from adamo_vh.runtime.embodiment import FOV_Y_RAD
 from adamo_vh.runtime.human.looks import Figure
 from adamo_vh.runtime.scenes.scene import Furniture, Light, PlacedObject, Room, Scene
-from adamo_vh.runtime.solids import Solid, outline
+from adamo_vh.runtime.solids import outline
 
 if TYPE_CHECKING:
     import mujoco

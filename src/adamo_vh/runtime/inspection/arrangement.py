@@ -13,11 +13,10 @@ from itertools import combinations
 import numpy as np
 
 from adamo_vh.engine import FLOOR
-from adamo_vh.geometry import Vec3
+from adamo_vh.geometry import Solid, Vec3, gaps
 from adamo_vh.runtime.assets.asset import Asset
 from adamo_vh.runtime.inspection.finding import SceneFinding, bounded, error, warning
 from adamo_vh.runtime.scenes.scene import PlacedObject, Scene
-from adamo_vh.runtime.solids import Solid, gaps
 from adamo_vh.runtime.world import (
     WorldSurface,
     furniture_solids,
