@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import mujoco
 
 MSAA_SAMPLES = 4
-SHADOW_MAP_PX = 2048
+SHADOW_MAP_PX = 3072
 _MAX_GEOMS = 4000
 
 _T = TypeVar("_T")

@@ -18,7 +18,7 @@ from adamo_vh.runtime.assets.room import room
 PICTURES: dict[str, Callable[[], paint.Picture]] = {
     "wood": lambda: paint.wood(64, 128, (150, 104, 66), 1),
     "planks": lambda: paint.planks((96, 192), 4, 2, (150, 104, 66), 2),
-    "plaster": lambda: paint.plaster(128, (200, 189, 170), 3),
+    "plaster": lambda: paint.plaster((96, 128), (200, 189, 170), 3),
     "soil": lambda: paint.soil(96, 4),
     "leaf": lambda: paint.leaf((62, 118, 52), (120, 160, 90), 5, 96),
     "fabric": lambda: paint.fabric(96, (120, 90, 70), 6),
@@ -133,6 +133,12 @@ def test_glass_is_clear_with_a_denser_base() -> None:
     assert alpha["wall"] < alpha["base"] < 1.0
 
 
+def test_only_the_thick_base_of_the_glass_casts_a_shadow() -> None:
+    """The rim alone would cast a dotted ring."""
+    casts = {part.material.name for part in built("glass").parts if part.material.casts_shadow}
+    assert casts == {"base"}
+
+
 def test_mug_is_hollow() -> None:
     """Straight down its middle one meets the inner bottom, far below the lip."""
     asset = built("cup")
@@ -186,6 +192,35 @@ def test_window_is_a_real_opening(shell: Asset) -> None:
     east = triangles[np.isclose(triangles[:, 0], 3.0, atol=1e-4)]
     opening = (np.abs(east[:, 1] + 1.0) < 0.95) & (east[:, 2] > 1.0) & (east[:, 2] < 2.4)
     assert len(east) > 0 and not opening.any()
+
+
+@pytest.mark.parametrize("off_the_wall_m", [0.3, 1.0, 3.0])
+@pytest.mark.parametrize("aside_m", [-2.5, -1.3, 0.0, 1.3, 2.5])
+def test_one_sees_the_outside_at_every_angle(
+    shell: Asset, off_the_wall_m: float, aside_m: float
+) -> None:
+    """Every line from an eye through the opening ends on the picture behind it, not in a void."""
+    (outside,) = (part for part in shell.parts if part.material.name == "outside")
+    eye = np.array((3.0 - off_the_wall_m, -1.0 + aside_m, 1.6))
+    opening = np.stack(np.meshgrid(3.12, np.linspace(-1.9, -0.1, 7), [1.0, 1.7, 2.4]), axis=-1)
+    lines = opening.reshape(-1, 3) - eye
+    a, b, c = np.moveaxis(outside.vertices[outside.faces].astype(float) - eye, 1, 0)
+    # A line passes a triangle where it lies on the same side of all three edges, seen from the eye.
+    sides = [lines @ np.cross(p, q).T for p, q in ((a, b), (b, c), (c, a))]
+    inside = np.logical_and.reduce([side <= 1e-9 for side in sides])
+    assert inside.any(axis=1).all()
+
+
+def test_paint_runs_around_the_room_unbroken(shell: Asset) -> None:
+    """Where two panels of a wall meet, their textures meet too."""
+    (walls,) = (part for part in shell.parts if part.material.name == "walls")
+    size = np.array(walls.material.texture.shape[1::-1])  # type: ignore[union-attr]
+    by_place: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
+    for place, uv in zip(np.round(walls.vertices, 3).tolist(), walls.uvs, strict=True):
+        by_place.setdefault(tuple(place), []).append(uv % 1.0 * size)
+    for found in by_place.values():
+        off = np.abs(np.array(found) - found[0])
+        assert np.minimum(off, size - off).max() < 0.5
 
 
 def test_nothing_leaves_the_room(shell: Asset) -> None:

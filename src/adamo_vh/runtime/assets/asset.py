@@ -25,6 +25,8 @@ class Material:
     shininess: float = 0.3
     reflectance: float = 0.0
     emission: float = 0.0
+    casts_shadow: bool = True
+    """Not for what light goes through: its shadow would be drawn as dark as any."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,6 +7,7 @@ not drawn and stay visible to rays (geom group 3).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,8 +22,6 @@ VISUAL_GROUP = 1
 """Geom group of what is drawn."""
 COLLISION_GROUP = 3
 """Geom group of what collides; MuJoCo does not draw it by default."""
-SHADOW_ALPHA = 0.4
-"""Thinner parts cast no shadow: MuJoCo would draw that of clear glass as dark as any."""
 
 _FRICTION = (0.9, 0.01, 0.0005)
 _COLLIDER_RGBA = (0.1, 0.8, 0.3, 0.3)
@@ -35,6 +34,7 @@ def add_asset(
     name: str,
     *,
     collide: bool = True,
+    shadow_light: Sequence[float] | None = None,
 ) -> None:
     """Add an asset's meshes, textures, materials and geoms; the body's frame is the asset's.
 
@@ -44,9 +44,12 @@ def add_asset(
         asset: What to add.
         name: Prefix of everything added, unique in the model.
         collide: Add the collision primitives and with them the mass. Without, the body is a ghost.
+        shadow_light: Where the light that casts shadows is, in the asset's frame; for what never
+            moves. Closed parts then cast theirs from the sides that lie in shadow anyway, so that
+            no lit side is speckled by its own shadow.
     """
     for i, part in enumerate(asset.parts):
-        _add_visual(spec, body, part, f"{name}/{i}_{part.material.name}")
+        _add_part(spec, body, part, f"{name}/{i}_{part.material.name}", shadow_light)
     if not collide:
         return
     volumes = [volume_m3(collider) for collider in asset.colliders]
@@ -72,28 +75,65 @@ def volume_m3(collider: Collider) -> float:
     raise ValueError(f"unknown collider shape {collider.shape!r}")
 
 
-def _add_visual(spec: mujoco.MjSpec, body: mujoco.MjsBody, part: Part, name: str) -> None:
+def _add_part(
+    spec: mujoco.MjSpec,
+    body: mujoco.MjsBody,
+    part: Part,
+    name: str,
+    shadow_light: Sequence[float] | None,
+) -> None:
+    add_material(spec, part.material, name)
+    casts = part.material.casts_shadow
+    if shadow_light is None or not casts or not is_closed(part):
+        _add_mesh(spec, body, part, _back_to_front(part), name, name, casts)
+        return
+    a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
+    unlit = np.einsum("ij,ij->i", np.cross(b - a, c - a), a - np.array(shadow_light)) > 0
+    for suffix, chosen in (("", ~unlit), ("/unlit", unlit)):
+        if chosen.any():
+            _add_mesh(spec, body, part, part.faces[chosen], name + suffix, name, bool(suffix))
+
+
+def is_closed(part: Part) -> bool:
+    """Whether a part's surface has no rim: every edge is shared by faces on both of its sides."""
+    places = np.unique(np.round(part.vertices, 6), axis=0, return_inverse=True)[1].ravel()
+    corners = places[part.faces].astype(np.int64)
+    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    count = int(places.max()) + 1
+    there, back = np.sort(start * count + end), np.sort(end * count + start)
+    return bool((there == back).all())
+
+
+def _add_mesh(
+    spec: mujoco.MjSpec,
+    body: mujoco.MjsBody,
+    part: Part,
+    faces: NDArray[np.int32],
+    name: str,
+    material: str,
+    casts: bool,
+) -> None:
     import mujoco
 
+    used, places = np.unique(faces, return_inverse=True)
     mesh = spec.add_mesh(name=name)
-    mesh.uservert = part.vertices.ravel()
-    mesh.usernormal = part.normals.ravel()
-    mesh.usertexcoord = part.uvs.ravel()
-    mesh.userface = _back_to_front(part).ravel()
+    mesh.uservert = part.vertices[used].ravel()
+    mesh.usernormal = part.normals[used].ravel()
+    mesh.usertexcoord = part.uvs[used].ravel()
+    mesh.userface = places.ravel()
     # Thin and open surfaces have no volume; a shell's inertia always exists. MuJoCo moves the mesh
     # to its principal axes and the geom back, so the vertices stay where they were.
     mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
-    add_material(spec, part.material, name)
     body.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_MESH,
         meshname=name,
-        material=name,
+        material=material,
         contype=0,
         conaffinity=0,
         group=VISUAL_GROUP,
         mass=0.0,
-        castshadow=part.material.rgba[3] >= SHADOW_ALPHA,
+        castshadow=casts,
     )
 
 

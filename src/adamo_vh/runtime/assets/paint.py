@@ -110,10 +110,10 @@ def planks(size_px: tuple[int, int], boards: int, cuts: int, colour: Colour, see
     return shade(colour, grain + 0.8 * tone - 4.0 * joint, 0.075)
 
 
-def plaster(size_px: int, colour: Colour, seed: int) -> Picture:
+def plaster(size_px: tuple[int, int], colour: Colour, seed: int) -> Picture:
     """A painted wall: almost even."""
-    field = noise(size_px, size_px, (3, 3), seed) + noise(size_px, size_px, (60, 60), seed + 1)
-    return shade(colour, field, 0.008)
+    field = noise(*size_px, (2, 2), seed) + noise(*size_px, (24, 24), seed + 1)
+    return shade(colour, field, 0.007)
 
 
 def soil(size_px: int, seed: int) -> Picture:

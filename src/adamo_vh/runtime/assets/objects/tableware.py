@@ -34,6 +34,10 @@ _GREENS: tuple[tuple[paint.Colour, paint.Colour], ...] = (
 """Blade and ribs of the leaves, from the old to the young."""
 _STEM_ROWS, _BLADE_ROWS = 3, 7
 _LEAVES = 38
+_THICK_ALPHA = 0.4
+"""Denser glass casts a shadow."""
+_RIM = Material("rim", (0.62, 0.64, 0.63, 1.0), specular=0.05, casts_shadow=False)
+"""Bright, so that one sees where the glass ends; alone its shadow would be a dotted ring."""
 
 
 def glass() -> Asset:
@@ -68,7 +72,7 @@ def glass() -> Asset:
     parts = (
         _clear(revolve(base, 48), "base", 0.52, paint.flat((172, 179, 176))),
         _clear(revolve(wall, 48), "wall", 0.28, _streaks()),
-        revolve(rim, 48).part(Material("rim", (0.62, 0.64, 0.63, 1.0), specular=0.05)),
+        revolve(rim, 48).part(_RIM),
     )
     return Asset(
         class_name="Glass",
@@ -255,7 +259,14 @@ def indoor_plant() -> Asset:
 def _clear(mesh: Mesh, name: str, alpha: float, picture: paint.Picture) -> Part:
     """Paint as glass; the highlight is as thin as the glass, so it never gets white."""
     return mesh.part(
-        Material(name, (1.0, 1.0, 1.0, alpha), texture=picture, specular=0.35, shininess=0.7)
+        Material(
+            name,
+            (1.0, 1.0, 1.0, alpha),
+            texture=picture,
+            specular=0.35,
+            shininess=0.7,
+            casts_shadow=alpha > _THICK_ALPHA,
+        )
     )
 
 
