@@ -174,9 +174,13 @@ def _corners(index: Ints) -> tuple[Ints, Ints, Ints, Ints]:
 def _skirting(size: Triple, middle: Pair) -> Iterator[Mesh]:
     (x, y), (length, depth, _) = middle, size
     thick, tall = _SKIRTING
+    # It goes some way into the wall, which hides its rounded edge there.
+    deep = thick + 0.01
     for s in (-1, 1):
-        yield box(length, thick, tall, 0.004).moved(x, y + s * (depth - thick) / 2, tall / 2)
-        yield box(thick, depth, tall, 0.004).moved(x + s * (length - thick) / 2, y, tall / 2)
+        across = s * (depth / 2 - thick + deep / 2)
+        along = s * (length / 2 - thick + deep / 2)
+        yield box(length, deep, tall, 0.004).moved(x, y + across, tall / 2)
+        yield box(deep, depth, tall, 0.004).moved(x + along, y, tall / 2)
 
 
 def _window_frame(x_max: float, window_y: float) -> Iterator[Mesh]:
