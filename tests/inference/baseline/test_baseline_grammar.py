@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from tests.inference.baseline.rewordings import REWORDINGS
 
 from adamo_vh.benchmark.tasks import TASKS
-from adamo_vh.inference.baseline.language.grammar import understand
 from adamo_vh.inference.baseline.language.plan import Description, Goal, Relation, Size
+from adamo_vh.inference.baseline.language.requests import understand
 from adamo_vh.inference.baseline.language.words import class_words, tokenize
 from adamo_vh.inference.baseline.sight.kinds import prototypes
 
@@ -92,26 +92,19 @@ FURTHER: list[tuple[str, list[str]]] = [
 ]  # fmt: skip
 
 NOT_UNDERSTOOD: list[tuple[str, str]] = [
-    ("Don't pick the plate", "don't"),
     ("Pick the plate and dance", "dance"),
     ("Stack the cups", "stack"),
     ("Put the glass on the plate", "plate"),
-    ("Pick the plate unless it is red", "unless"),
-    ("Pick the object nearest to the window", "window"),
+    ("Pick the plate unless you are tired", "tired"),
+    ("Pick the object nearest to the window", "nearest"),
     ("Put the plate", "where"),
     ("Put it on the floor", "it"),
     ("Bring the cup there", "there"),
     ("Pick an object", "any object"),
-    ("Pick the second largest object", "second"),
-    ("Put everything except the plate on the floor", "except"),
-    ("Put the screwdriver between the plate and the glass", "between"),
     ("Pick the heaviest object", "heaviest"),
     ("Put three objects on the floor", "any object"),
     ("Swap the glass and the cup", "swap"),
-    ("Is the plate on the table?", "is the plate"),
-    ("Find the plate", "no wish"),
     ("What is the capital of France?", "capital"),
-    ("hello", "no wish"),
     ("", "no wish"),
 ]
 
@@ -169,7 +162,8 @@ def test_superlatives_and_groups_need_comparing():
 @given(st.text(max_size=200))
 def test_any_text_gives_goals_or_a_problem(text):
     plan = understand(text)
-    assert bool(plan.goals) != bool(plan.problem)
+    assert plan.empty is False
+    assert not (plan.goals and plan.problem)
 
 
 _SOME_WORDS = (
@@ -184,7 +178,8 @@ _WORDS = st.sampled_from(_SOME_WORDS.split())
 @given(st.lists(_WORDS, max_size=14).map(" ".join))
 def test_any_mix_of_known_words_gives_goals_or_a_problem(text):
     plan = understand(text)
-    assert bool(plan.goals) != bool(plan.problem)
+    assert plan.empty is False
+    assert not (plan.goals and plan.problem)
 
 
 def test_symbols_keep_the_words():

@@ -11,7 +11,7 @@ from tests.inference.baseline.room import TOOLS, TextRoom
 
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.baseline import BaselineModel
-from adamo_vh.inference.baseline.language.grammar import understand
+from adamo_vh.inference.baseline.language.requests import understand
 from adamo_vh.inference.baseline.mind.choosing import degree, thing_of
 from adamo_vh.inference.baseline.sight.kinds import classify
 from adamo_vh.inference.baseline.sight.measures import Sight

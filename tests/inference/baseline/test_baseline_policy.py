@@ -93,7 +93,7 @@ def test_notes_have_evidence_conclusion_and_next_step():
     room = TextRoom(PROMPT["T8"]).run()
     for step in room.steps:
         assert isinstance(step[0], AIMessage)
-        for word in ("Evidence:", "Conclusion:", "Next:", "[#"):
+        for word in ("Evidence:", "Conclusion:", "Next:", "(Memory, step "):
             assert word in step[0].text
 
 
@@ -123,7 +123,7 @@ def test_it_says_so_when_the_thing_is_nowhere():
     del items["Plate_57"]
     room = TextRoom("Put the glass on the floor and pick the plate", items=items).run()
     assert room.on_floor() == {"37"}
-    assert "could not find the plate" in room.answer
+    assert "found no plate" in room.answer
     assert any(name == "Walk" for name, _ in room.calls)
 
 
@@ -137,8 +137,8 @@ def test_it_says_so_when_it_does_not_understand():
 def test_one_hand_holds_one_thing():
     room = TextRoom("Pick the plate and the cup").run()
     assert room.held == "Plate_57"
-    assert "the cup (Cup_45) not in my hand" in room.answer
-    assert "one object only" in room.answer
+    assert "I did not take Cup_45" in room.answer
+    assert "one thing only" in room.answer
 
 
 def test_superlatives_compare_within_a_class():

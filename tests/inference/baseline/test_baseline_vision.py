@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from adamo_vh.geometry import Camera, Vec3
-from adamo_vh.inference.baseline.language.grammar import understand
+from adamo_vh.inference.baseline.language.requests import understand
 from adamo_vh.inference.baseline.mind.choosing import degree, thing_of
 from adamo_vh.inference.baseline.prompt.reading import Body, Listed, Prompt, Room
 from adamo_vh.inference.baseline.sight.kinds import classify, prototypes

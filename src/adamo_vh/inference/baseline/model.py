@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.baseline.language.grammar import understand
+from adamo_vh.inference.baseline.language.requests import understand
 from adamo_vh.inference.baseline.mind.policy import decide
 from adamo_vh.inference.baseline.prompt.reading import read_prompt
 from adamo_vh.inference.baseline.prompt.speaking import manner_of, say
@@ -52,7 +52,9 @@ class BaselineModel:
         """
         begin = time.perf_counter()
         prompt, manner = read_prompt(messages), manner_of(messages, tools)
-        step = decide(prompt, understand(prompt.instruction), manner, self._reader)
+        step = decide(
+            prompt, understand(prompt.instruction, prompt.spoken_of), manner, self._reader
+        )
         if self._remark and not prompt.turns:
             step = replace(step, note=f"{self._remark} {step.note}")
         message = say(step, manner, prompt.instruction)

@@ -5,12 +5,30 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from adamo_vh.inference.baseline.language.plan import Description, Relation, Size
-from adamo_vh.inference.baseline.language.words import Kind, Token, is_plural
+from adamo_vh.inference.baseline.language.words import Kind, Token
 
 _BEFORE_NOUN = frozenset(
-    {Kind.DET, Kind.EVERY, Kind.COUNT, Kind.COLOUR, Kind.SHAPE, Kind.GLASSY, Kind.SIZE}
+    {
+        Kind.DET,
+        Kind.EVERY,
+        Kind.COUNT,
+        Kind.COLOUR,
+        Kind.SHAPE,
+        Kind.GLASSY,
+        Kind.SIZE,
+        Kind.OTHER,
+    }
 )
 _STARTERS = _BEFORE_NOUN | {Kind.CLASS, Kind.OBJECT, Kind.ID, Kind.TAGGED, Kind.LABEL}
+
+
+_PLURAL_NOUNS = (
+    "objects|items|things|articles|ones|stuff|products|locks|padlocks|batteries|flashlights|"
+    "torches|tapes|screwdrivers|cans|tins|medicines|keys|bottles|glasses|tumblers|cups|mugs|"
+    "plants|plates|dishes|lighters|corners|belongings|food|foods|groceries|edibles|eatables|tools|"
+    "kitchenware|tableware|crockery|utensils|vessels|drinkware|drinks|beverages|snacks|others|"
+    "stuff"
+)
 
 
 class NotUnderstood(Exception):  # noqa: N818 - a control signal of the parser, never seen outside
@@ -61,6 +79,13 @@ class Cursor:
         return NotUnderstood(f"{quoted}{f' ({why})' if why else ''}")
 
 
+def _is_plural(token: Token) -> bool:
+    """Whether a noun means several things; "pills" or "field glasses" are one."""
+    return token.value != "Binoculars" and any(
+        word in _PLURAL_NOUNS.split("|") for word in token.text.split()
+    )
+
+
 @dataclass(slots=True)
 class _Draft:
     """A description under construction."""
@@ -73,6 +98,10 @@ class _Draft:
     transparent: bool = False
     label: bool = False
     size: Size | None = None
+    rank: int = 1
+    other: bool = False
+    definite: bool = False
+    but: list[Description] = field(default_factory=list)
     every: bool = False
     count: int | None = None
     generic: bool = False
@@ -88,7 +117,7 @@ class _Draft:
     def says_something(self) -> bool:
         return bool(
             self.ids or self.classes or self.colours or self.part_colours or self.shapes
-            or self.transparent or self.label or self.size or self.every
+            or self.transparent or self.label or self.size or self.every or self.other
         )  # fmt: skip
 
     def finish(self, text: str) -> Description:
@@ -102,6 +131,10 @@ class _Draft:
             transparent=self.transparent,
             label=self.label,
             size=self.size,
+            rank=self.rank,
+            other=self.other,
+            definite=self.definite and not self.plural,
+            but=tuple(self.but),
             every=self.every or (self.plural and (self.count or 0) > 1),
             count=self.count if self.plural else None,
             source=self.source,
@@ -163,7 +196,12 @@ def _adjective(token: Token, draft: _Draft) -> None:
         case Kind.GLASSY:
             draft.transparent = True
         case Kind.SIZE:
-            draft.size = Size(token.value)
+            size, _, rank = token.value.partition(" ")
+            draft.size, draft.rank = Size(size), int(rank or 1)
+        case Kind.OTHER:
+            draft.other = True
+        case Kind.DET:
+            draft.definite = draft.definite or token.text in ("the", "this", "that", "my", "your")
 
 
 def _noun(cursor: Cursor, draft: _Draft) -> bool:
@@ -180,7 +218,7 @@ def _noun(cursor: Cursor, draft: _Draft) -> bool:
             draft.label = True
         else:
             draft.generic = True
-        if is_plural(token):
+        if _is_plural(token):
             draft.plural = True
             draft.every = draft.every or not draft.count
     return found
@@ -189,12 +227,28 @@ def _noun(cursor: Cursor, draft: _Draft) -> bool:
 def _after_noun(cursor: Cursor, draft: _Draft) -> bool:
     """One further remark behind the noun; False if there is none."""
     mark = cursor.mark()
-    readers = (_id, _of, _location, _being, _having, _text)
+    readers = (_except, _id, _of, _location, _being, _having, _text)
     for reader in readers:
         if reader(cursor, draft):
             return True
         cursor.rewind(mark)
     return False
+
+
+def _except(cursor: Cursor, draft: _Draft) -> bool:
+    """Read "except the cup and the plate"."""
+    if not cursor.accept(Kind.EXCEPT):
+        return False
+    draft.but.append(noun_phrase(cursor))
+    draft.every = draft.every or draft.plural
+    while cursor.peek() in (Kind.AND, Kind.COMMA, Kind.OR):
+        mark = cursor.mark()
+        cursor.next()
+        if not starts_phrase(cursor):
+            cursor.rewind(mark)
+            break
+        draft.but.append(noun_phrase(cursor))
+    return True
 
 
 def _id(cursor: Cursor, draft: _Draft) -> bool:

@@ -17,8 +17,40 @@ _PLACED = (
 )
 _PREPOSITION = r"(?:on|onto|in|into|to|near|next|beside|by|close|alongside|adjacent|at|down)"
 _PLACE_VERB = r"(?:put|place|drop|leave|set|lay)"
+_UNITS = {"cm": 1, "centimetre": 1, "centimeter": 1, "m": 100, "metre": 100, "meter": 100,
+          "inch": 2.54, "inche": 2.54, "foot": 30, "feet": 30, "step": 60}  # fmt: skip
+_NUMBERS = {"a": 1, "an": 1, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "half a": 0.5,
+            "ten": 10, "twenty": 20, "thirty": 30, "forty": 40, "fifty": 50}  # fmt: skip
+_LENGTH = re.compile(
+    r"\b(?:about |around |at least |some |roughly |exactly )?"
+    r"(\d+(?:[.,]\d+)?|half a|an?|one|two|three|four|five|ten|twenty|thirty|forty|fifty) ?"
+    r"(cm|centimet(?:re|er)|m|met(?:re|er)|inche?|foot|feet)s?\b(?: away)?"
+)
+_WAY = re.compile(
+    r"(@(\d+)|\ba (?:little )?bit|\ba little|\bslightly|\bfurther|\bmore)? ?"
+    r"\b(?:(?:to|on|towards?) (?:the|your|my) (left|right|front|back)|"
+    r"(forwards?|backwards?|closer to me|away from me|to one side))"
+    r"(?! (?:of|side|corner|edge|most|hand))\b"
+)
+_COUNTED = re.compile(
+    r"\b(\d{1,2}) (?=(?:\w+ ){0,2}(?:objects|items|things|batteries|locks|padlocks|keys|bottles|"
+    r"glasses|cups|mugs|plates|plants|lighters|tins|cans|screwdrivers|flashlights|torches|tapes)\b)"
+)
+_WORDS = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"]
 _RULES: tuple[tuple[str, str], ...] = (
     (r"\bi'd\b", "i would"),
+    (r"^(?:i'm|i am|we are|we're|it is|it's) (?:so |very )?\w+\s*[,.;!]\s*", ""),
+    (r"\b(?:that|which) (?:is|are) (?:not|n't) (?:an? |the )?", "except "),
+    (r"\b(?:that|which) (?:isn't|aren't|is not|are not) (?:an? |the )?", "except "),
+    (r"\b(everything|anything|all (?:of )?(?:the )?\w+|every \w+|all) but (?=the|a|my|\w+s\b)",
+     r"\1 except "),
+    (r"\b(put|place|set|lay|bring|move|take|get) ((?:(?!\bback\b)[\w' ])+?) back"
+     r"(?=\s*(?:$|[.!?;,]|and\b|then\b|please\b))", r"\1 \2 where it was"),
+    (r"\b(?:put|place|set|lay) back ((?:the |my |a )?\w+)(?=\s*(?:$|[.!?;,]))",
+     r"put \1 where it was"),
+    (r"\breturn ((?:the |my |a )?(?!to\b|here\b|back\b)\w+)(?=\s*(?:$|[.!?;,]))",
+     r"put \1 where it was"),
+    (r"\bswap (?:the )?place", "swap place"),
     (r"\b(?:that|it|what)'s\b", "that is"),
     (r"^\W*(?:your|the|my) (?:task|job|goal|instruction|mission)\b(?: is)?(?: to)?\s*:?", ""),
     (r"^(.+?) is the (?:object|thing|item|one)(?: that| which)? i (?:want|need|would like) you to "
@@ -64,6 +96,25 @@ def rephrased(text: str) -> str:
         text: What the user wrote.
     """
     plain = " ".join(text.lower().replace("\u2019", "'").split())
+    plain = _COUNTED.sub(_count_word, plain)
+    plain = _WAY.sub(_way, _LENGTH.sub(_length, plain))
     for pattern, better in _compiled():
         plain = pattern.sub(better, plain)
     return plain
+
+
+def _count_word(match: re.Match[str]) -> str:
+    number = int(match[1])
+    return f"{_WORDS[number]} " if 2 <= number < len(_WORDS) else match[0]
+
+
+def _length(match: re.Match[str]) -> str:
+    number = _NUMBERS.get(match[1]) or float(match[1].replace(",", "."))
+    return f"@{round(number * _UNITS[match[2].replace('ers', 'er')])}"
+
+
+def _way(match: re.Match[str]) -> str:
+    way = match[3] or {"f": "front", "b": "back", "c": "back", "a": "front"}.get(
+        match[4][0], "left"
+    )
+    return f" @{way}{match[2] or 25}"

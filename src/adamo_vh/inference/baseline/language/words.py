@@ -53,6 +53,22 @@ class Kind(StrEnum):
     AGAIN = "again"
     """The wish named last, for another thing."""
     NEAREST = "nearest"
+    SIDE = "side"
+    """Left of, right of, in front of, behind: as the viewer sees it."""
+    BETWEEN = "between"
+    UNDER = "under"
+    FAR = "far"
+    EDGE = "edge"
+    HOME = "home"
+    """Where a thing was before."""
+    SHIFT = "shift"
+    """A distance, with a direction or without one: "@right50", "@30" (cm)."""
+    TOGETHER = "together"
+    EXCEPT = "except"
+    OTHER = "other"
+    OR = "or"
+    LANDMARK = "landmark"
+    """Parts of a room that no text tells the place of: a window, a wall."""
     AND = "and"
     COMMA = "comma"
     THEN = "then"
@@ -91,23 +107,33 @@ _PHRASES: dict[Kind, str] = {
     "on the same surface as|alongside of|just next to|just beside|closely to",
     Kind.FROM: "from|off|off of|out of|from off",
     Kind.OF: "of",
-    Kind.FLOOR: "floor|ground|the ground|carpet|rug",
+    Kind.FLOOR: "floor|ground|the ground",
     Kind.CORNER: "corner|corner area|corners|room corner|corner zone|room's corner",
     Kind.ROOM: "room|living room|the room|space",
-    Kind.FURNITURE: "table|dining table|tabletop|table top|desk|coffee table|sofa|couch|shelf|"
-    "tall shelf|bookshelf|sideboard|cabinet|cupboard|counter|chair|surface",
+    Kind.FURNITURE: "table|dining table|tabletop|table top|tables|desk|writing desk|coffee table|"
+    "side table|end table|kitchen table|big table|small table|low table|sofa|couch|settee|"
+    "sofa table|shelf|tall shelf|top shelf|upper shelf|highest shelf|middle shelf|lower shelf|"
+    "bottom shelf|lowest shelf|first shelf|second shelf|third shelf|shelves|bookshelf|bookcase|"
+    "top of the shelf|top of the tall shelf|sideboard|cabinet|cupboard|counter|chair|chairs|"
+    "armchair|stool|bench|console|console table|surface|bed|nightstand|dresser|wardrobe|"
+    "kitchen counter|worktop|windowsill|window sill|sill|window ledge|mantelpiece|piano|tv stand|"
+    "drawer|basket|lamp|floor lamp|rug|carpet|mat|vase|box|bin|trash|trash can|fridge|oven|sink|"
+    "bathtub|tray|rack|ottoman|cushion|pillow|hallway|ledge|tabletops|footstool|recliner|crate|"
+    "bucket|bag|radiator|fireplace",
+    Kind.LANDMARK: "window|windows|wall|walls|door|doors|ceiling|curtain|curtains|picture|"
+    "pictures|painting|paintings|poster|mirror|entrance|exit|me|myself|outlet",
     Kind.OBJECT: "object|item|thing|article|one|objects|items|things|articles|ones|stuff|"
     "product|products|household item|household items|household object|household objects|belongings",
     Kind.MEASURE: "volume|size|height|dimensions|extent",
     Kind.LABEL: "label|labels|product label|product labels|printed label|printed labels|"
     "printed product label|printed product labels|printed text|text|writing|print|printed words|"
-    "words|lettering|letters|brand label|brand labels|sticker|stickers|product name|"
-    "product names|product text|labelling|labeling|labeled|labelled|printed|printing|"
-    "text label|text labels|inscription|logo|packaging label|printed packaging|brand name|brand",
+    "words|lettering|letters|brand label|brand labels|sticker|stickers|product name|product names|"
+    "product text|labelling|labeling|labeled|labelled|printed|printing|text label|text labels|"
+    "inscription|logo|packaging label|printed packaging|brand name|brand",
     Kind.PART: "part|parts|bit|bits|area|areas|section|sections|element|elements|portion|portions|"
-    "piece|pieces|patch|patches|component|components|region|regions|spot|spots|surfaces|"
-    "handle|cap|lid|rim|ring|rings|grip|top|base|edge|stripe|stripes|detail|details|colour|"
-    "color|body|colouring|coloring",
+    "piece|pieces|patch|patches|component|components|region|regions|spot|spots|surfaces|handle|"
+    "cap|lid|rim|ring|rings|grip|top|base|edge|stripe|stripes|detail|details|colour|color|body|"
+    "colouring|coloring",
     Kind.EVERY: "all|every|each|all the|all of the|all of|everything|anything|any and all|"
     "every single|each and every|whatever|each of the|every one of the|all those|all these|"
     "every last",
@@ -116,11 +142,11 @@ _PHRASES: dict[Kind, str] = {
     "these ones|both there|each one|all three|all|those things|these things|these objects|"
     "these items|those objects|those items|the objects there|the same",
     Kind.TAGGED: "tagged|tagged as|tagged with|tag|with tag|with the tag|with tag number|number|"
-    "numbered|id|with id|with the id|with number|with the number|identified as|marked|"
-    "marked as|marked with|carrying the tag|bearing the tag|named|called|identifier|"
-    "with the tag number|tag number|with identifier|whose tag is|whose id is|which is tagged|"
-    "that is tagged|having tag|that has tag|that has the tag|that has id|that has the id|"
-    "tagged as number|tagged number|having the tag|having id|identified by|under tag",
+    "numbered|id|with id|with the id|with number|with the number|identified as|marked|marked as|"
+    "marked with|carrying the tag|bearing the tag|named|called|identifier|with the tag number|"
+    "tag number|with identifier|whose tag is|whose id is|which is tagged|that is tagged|"
+    "having tag|that has tag|that has the tag|that has id|that has the id|tagged as number|"
+    "tagged number|having the tag|having id|identified by|under tag",
     Kind.WITH: "with|having|featuring|bearing|showing|carrying|which have|which has|that have|"
     "that has|that bear|that bears|that carry|that carries|that show|that shows|which show|"
     "that contain|that contains|which contain|containing|including|that feature|that features|"
@@ -130,17 +156,43 @@ _PHRASES: dict[Kind, str] = {
     Kind.BE: "is|are|be|that is|that are|which is|which are|that's|looks|that looks|that look|"
     "lies|stands|lying|standing|sitting|that lies|that stands|located|placed|being",
     Kind.GOES: "should be|must be|should go|must go|goes|belongs|belong|needs to be|need to be|"
-    "needs to go|need to go|has to be|have to be|shall be|has to go|have to go|to be|"
-    "should stand|should lie|should rest|ends up|end up|should end up|should be placed|"
-    "should be put|must be placed|must be put|needs to be put|needs to be placed|to go|shall go|"
-    "should move|must move|should stay|to stand|to lie|to rest|to end up|stays|stay|will be|"
-    "ought to be|ought to go",
+    "needs to go|need to go|has to be|have to be|shall be|has to go|have to go|to be|should stand|"
+    "should lie|should rest|ends up|end up|should end up|should be placed|should be put|"
+    "must be placed|must be put|needs to be put|needs to be placed|to go|shall go|should move|"
+    "must move|should stay|to stand|to lie|to rest|to end up|stays|stay|will be|ought to be|"
+    "ought to go",
     Kind.THERE: "there|over there|to the same place|in the same place|at the same place|"
     "in the same spot|to the same spot",
     Kind.HELD: "in your hand|in the hand|to your hand|into your hand|into the hand|in hand|"
-    "in your hands|into your hands",
+    "in your hands|into your hands|to me|over to me",
     Kind.AGAIN: "do the same with|do the same for|the same with|the same for|likewise",
     Kind.NEAREST: "nearest|closest",
+    Kind.BETWEEN: "between|in between|midway between|halfway between|in the middle between|"
+    "in the middle of",
+    Kind.UNDER: "under|underneath|below|beneath",
+    Kind.FAR: "far from|far away from|away from|as far as possible from|well away from|"
+    "at a distance from|far off from|distant from|far apart from|as far away as possible from",
+    Kind.EDGE: "near the edge of|at the edge of|close to the edge of|on the edge of|"
+    "to the edge of|by the edge of|next to the edge of|near an edge of|at an edge of|"
+    "close to an edge of|along the edge of|onto the edge of|near the border of|near the edge|"
+    "at the edge|close to the edge|on the edge|by the edge|to the edge",
+    Kind.HOME: "where it was|where they were|where it came from|where you found it|"
+    "where it stood|where it lay|to its place|in its place|to its old place|where you got it|"
+    "where you took it from|where you picked it up|where it was before|to where it was|"
+    "to where you found it|to where it came from|where it belongs|to its original place|"
+    "to its original position|in its original place|at its original place|to its original spot|"
+    "in its old place|where they came from|where you found them|where it had been|"
+    "to where it had been|to where they were|in the place where it was|at the place where it was|"
+    "where they stood|to the place where it was|to its previous place|to their places|"
+    "where it started",
+    Kind.TOGETHER: "next to each other|beside each other|near each other|close to each other|"
+    "next to one another|beside one another|near one another|close to one another|close together|"
+    "side by side|together|by each other|in a group|in one place|near to each other|"
+    "alongside each other",
+    Kind.EXCEPT: "except|except for|apart from|other than|excluding|save for|"
+    "with the exception of|aside from|leaving out|minus",
+    Kind.OTHER: "other|others|remaining",
+    Kind.OR: "or|or else|or maybe",
     Kind.AND: "and|plus|as well as|along with|&|and also|but also",
     Kind.COMMA: ",",
     Kind.THEN: "then|moreover|after that|afterwards|afterward|next|finally|subsequently|later|"
@@ -151,20 +203,20 @@ _PHRASES: dict[Kind, str] = {
     "second|third",
     Kind.SKIP: "please|kindly|could you|can you|would you|will you|could you please|"
     "can you please|would you please|i would like you to|i'd like you to|i want you to|"
-    "i need you to|for me|now|just|first|firstly|go|go and|walk|down|up|over|here|"
-    "carefully|gently|safely|slowly|"
-    "quickly|thanks|thank you|hey|hi|hello|adamo|ok|okay|let us|"
-    "let's|you|your task is to|your job is to|try to|start by|somewhere|anywhere|directly|right|"
-    "exactly|simply|you should|you must|you have to|you need to|back|there is|sir|so|together|"
+    "i need you to|for me|now|just|first|firstly|go|go and|walk|down|up|over|here|carefully|"
+    "gently|safely|slowly|quickly|thanks|thank you|hey|hi|hello|adamo|ok|okay|let us|let's|you|"
+    "your task is to|your job is to|try to|start by|somewhere|anywhere|directly|right|exactly|"
+    "simply|you should|you must|you have to|you need to|back|there is|sir|so|together|"
     "would you mind|do me a favor and|do me a favour and|be so kind as to|would you be so kind to|"
-    "task|i ask you to|we need you to|we want you to|must|should|if possible|"
-    "with your hand|go to|begin by|by hand|"
-    "in order|coloured|colored|your goal is to|away|along|only|each time|one by one|"
-    "one after another|"
-    "one after the other|immediately|straight|free|empty|available|a free spot|"
-    "well|nicely|proceed to|continue to|go ahead and|a bit|very|respectively|"
-    "that you can find|that you find|you can find|you can see|that you can see|you see|you find|"
-    "in the room|of the room|from the room|in this room|around|present|visible|dear|friend",
+    "task|i ask you to|we need you to|we want you to|must|should|if possible|with your hand|go to|"
+    "begin by|by hand|in order|coloured|colored|your goal is to|away|along|only|each time|"
+    "one by one|one after another|one after the other|immediately|straight|again|once more|"
+    "once again|as well as possible|for us|softly|neatly|exactly there|and so on|at once|"
+    "right away|right now|if you like|either|currently|at the moment|at present|still|already|"
+    "free|empty|available|a free spot|well|nicely|proceed to|continue to|go ahead and|a bit|very|"
+    "respectively|that you can find|that you find|you can find|you can see|that you can see|"
+    "you see|you find|in the room|of the room|from the room|in this room|around|present|visible|"
+    "dear|friend",
 }
 
 _VALUED: dict[Kind, dict[str, str]] = {
@@ -175,7 +227,6 @@ _VALUED: dict[Kind, dict[str, str]] = {
         "Battery": "battery|batteries|battery cell|cell",
         "Tape": "tape|roll of tape|adhesive tape|tape roll|roll of adhesive tape|duct tape|"
         "sticky tape|roll of duct tape|masking tape|scotch tape|roll|tapes",
-        "Screwdriver": "screwdriver|screw driver|screwdrivers",
         "PeanutButter": "peanut butter|jar of peanut butter|peanut butter jar|jar|"
         "peanutbutter|peanut butter pot|peanut spread",
         "TomatoSoup": "tomato soup|can of tomato soup|tomato soup can|soup can|can of soup|"
@@ -193,14 +244,23 @@ _VALUED: dict[Kind, dict[str, str]] = {
         "Lighter": "lighter|cigarette lighter|zippo|petrol lighter|gas lighter|fire lighter|"
         "lighters",
         "Key": "key|house key|door key|keys|metal key",
-        "WineBottle": "wine|wine bottle|bottle of wine|red wine|bottle of red wine|"
-        "red wine bottle|winebottle|wine bottles",
         "WineBottle Painkiller Pills": "bottle|bottles",
         "Glass": "glass|tumbler|drinking glass|water glass|glass of water|beaker|glasses|"
         "drinking glasses|tumblers",
         "Cup": "cup|mug|coffee cup|coffee mug|tea cup|teacup|cups|mugs",
         "IndoorPlant": "indoor plant|plant|potted plant|houseplant|house plant|pot plant|"
         "plant pot|flower pot|flowerpot|flower|indoorplant|plants|potted flower|green plant",
+        "PeanutButter TomatoSoup": "food|foods|groceries|food items|food item|edible things|"
+        "things to eat|something to eat|eatables|edibles|food products|canned food|snacks",
+        "Screwdriver": "screwdriver|screw driver|screwdrivers|tools|tool|hand tools|hand tool",
+        "Glass Cup Plate": "kitchen things|kitchen items|kitchen objects|kitchen thing|"
+        "kitchenware|tableware|crockery|kitchen item|kitchen utensils|kitchen stuff|kitchen ware|"
+        "kitchen object",
+        "Cup Glass": "something to drink from|something to drink out of|drinking vessel|"
+        "drinking vessels|drinkware|drinking things|things to drink from",
+        "WineBottle": "wine|wine bottle|bottle of wine|red wine|bottle of red wine|"
+        "red wine bottle|winebottle|wine bottles|alcohol|something to drink|drink|drinks|beverage|"
+        "beverages",
         "Plate": "plate|dish|dinner plate|plates|dishes|platter|saucer",
     },
     Kind.COLOUR: {
@@ -235,26 +295,37 @@ _VALUED: dict[Kind, dict[str, str]] = {
         "tallest": "tallest|taller|tall",
         "shortest": "shortest|shorter",
     },
+    Kind.SIDE: {
+        "left": "left of|to the left of|on the left of|at the left of|on the left side of|"
+        "to the left side of|left to|on the left hand side of|left from",
+        "right": "right of|to the right of|on the right of|at the right of|on the right side of|"
+        "to the right side of|on the right hand side of|right from",
+        "front": "in front of|on the near side of|this side of|to the front of",
+        "behind": "behind|in back of|at the back of|on the far side of|to the back of|"
+        "to the rear of",
+    },
     Kind.COUNT: {
         "1": "exactly one|a single|single",
         "2": "two|the two|both|both the|both of the|a pair of|the pair of",
         "3": "three|the three|all three",
         "4": "four|the four|all four",
         "5": "five|the five|all five",
+        "6": "six|the six|all six",
+        "7": "seven|the seven|all seven",
+        "8": "eight|the eight|all eight",
+        "9": "nine|the nine|all nine",
+        "10": "ten|the ten|all ten",
     },
 }
 
-_PLURAL_NOUNS = (
-    "objects|items|things|articles|ones|stuff|products|locks|padlocks|batteries|flashlights|"
-    "torches|tapes|screwdrivers|cans|tins|medicines|keys|bottles|glasses|tumblers|cups|mugs|"
-    "plants|plates|dishes|lighters|corners|belongings"
-)
+_RANKS = {"second": 2, "2nd": 2, "next": 2, "third": 3, "3rd": 3, "fourth": 4}
 
-_WORD = re.compile(r"[a-z]+_\d+|#?\d+|[a-z]+(?:'[a-z]+)?|[,.;:!?&]")
+_WORD = re.compile(r"@[a-z]*\d*|[a-z]+_\d+|#?\d+|[a-z]+(?:'[a-z]+)?|[,.;:!?&]")
 
 
 @cache
-def _table() -> dict[str, tuple[Kind, str]]:
+def phrase_table() -> dict[str, tuple[Kind, str]]:
+    """All known phrases with their symbols and values."""
     table: dict[str, tuple[Kind, str]] = {}
     for kind, phrases in _PHRASES.items():
         for phrase in phrases.split("|"):
@@ -263,24 +334,25 @@ def _table() -> dict[str, tuple[Kind, str]]:
         for value, phrases in by_value.items():
             for phrase in phrases.split("|"):
                 table[phrase] = (kind, value)
+    for value, phrases in _VALUED[Kind.SIZE].items():
+        for word, rank in _RANKS.items():
+            table.update(
+                {
+                    f"{word} {phrase}": (Kind.SIZE, f"{value} {rank}")
+                    for phrase in phrases.split("|")
+                }
+            )
     return table
 
 
 @cache
 def _longest() -> int:
-    return max(len(phrase.split()) for phrase in _table())
-
-
-def is_plural(token: Token) -> bool:
-    """Whether a noun means several things; "pills" or "field glasses" are one."""
-    return token.value != "Binoculars" and any(
-        word in _PLURAL_NOUNS.split("|") for word in token.text.split()
-    )
+    return max(len(phrase.split()) for phrase in phrase_table())
 
 
 def class_words() -> dict[str, str]:
     """Each class-meaning phrase with its classes, separated by blanks."""
-    return {phrase: value for phrase, (kind, value) in _table().items() if kind is Kind.CLASS}
+    return {phrase: value for phrase, (kind, value) in phrase_table().items() if kind is Kind.CLASS}
 
 
 def tokenize(text: str) -> list[Token]:
@@ -304,7 +376,9 @@ def tokenize(text: str) -> list[Token]:
 
 
 def _longest_match(words: list[str], at: int) -> tuple[Token, int]:
-    table = _table()
+    table = phrase_table()
+    if words[at].startswith("@"):
+        return Token(Kind.SHIFT, words[at][1:], words[at]), 1
     if re.fullmatch(r"#?\d+|[a-z]+_\d+", words[at]):
         return Token(Kind.ID, words[at].lstrip("#"), words[at]), 1
     for length in range(min(_longest(), len(words) - at), 0, -1):

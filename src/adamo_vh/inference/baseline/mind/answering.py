@@ -1,92 +1,192 @@
-"""The final answer: what was done, and what was not and why."""
+"""The final answer: composed from what feedback and views bear out, and from nothing else."""
 
 from __future__ import annotations
 
-from adamo_vh.inference.baseline.language.plan import Goal, Plan, Relation
+from dataclasses import dataclass, field
+
+from adamo_vh.inference.baseline.language.plan import Act, Goal, Plan, Relation
+from adamo_vh.inference.baseline.language.requests import CAN
+from adamo_vh.inference.baseline.mind.asking import bare, tell, verdict
+from adamo_vh.inference.baseline.mind.beliefs import OF_CONDITION
+from adamo_vh.inference.baseline.mind.evidence import anchor_of, claim
 from adamo_vh.inference.baseline.mind.memory import Finish, Job, Memory, Status
 from adamo_vh.inference.baseline.mind.searching import Stage
+from adamo_vh.inference.baseline.prompt.reading import Prompt
+from adamo_vh.inference.baseline.sight.kinds import class_of
 
 _SURE = 0.5
 _NOTHING_FOUND = 0.6
 """How sure it is that what it looked for all over is not there."""
+_FEW = 5
 
 
-def finish(plan: Plan, memory: Memory, stage: Stage) -> Finish:
-    """The end of an episode: the answer, what it rests on, and what is not known.
+@dataclass(slots=True)
+class _Account:
+    """Sentences so far."""
+
+    done: list[str] = field(default_factory=list)
+    missed: list[str] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+    sure: float = 0.98
+    open_ended: bool = False
+    """Whether there may be more things of a kind of which all were meant."""
+
+
+def refusal(problem: str) -> Finish:
+    """The end of what cannot be done or was not understood."""
+    answer = f"I did nothing, because I did not understand this part: {problem}. {CAN}"
+    return Finish(answer, "nothing was done", "the room was not searched")
+
+
+def finish(plan: Plan, memory: Memory, prompt: Prompt, stage: Stage) -> Finish:
+    """The end of an instruction: the answer, what it rests on, and what is not known.
 
     Args:
         plan: What was asked.
-        memory: What was done.
+        memory: What was done and seen.
+        prompt: For the room.
         stage: How far the search went.
     """
-    done = [job for job in memory.jobs if job.status is Status.DONE]
-    said = [f"{job.tag} {_place(plan.goals[job.goal])}" for job in done]
-    verified = f"by the feedback: {', '.join(said)}" if said else "nothing"
-    unseen = "nothing that matters" if stage is Stage.OVER else "parts of the room not looked at"
-    unsure = [job.tag for job in done if _fit(job, memory) < _SURE]
-    if unsure:
-        unseen += f"; not sure that {_and(unsure)} is what was meant"
-    sure = min((_fit(job, memory) for job in done), default=_NOTHING_FOUND)
+    account = _Account()
+    for index, goal in enumerate(plan.goals):
+        _tell_goal(goal, index, memory, prompt, account)
+    for index, act in enumerate(plan.acts):
+        _tell_act(act, index, memory, account)
+    told = [
+        tell(question, index, memory, prompt, stage)
+        for index, question in enumerate(plan.questions)
+    ]
+    sentences = [_summary(account), *account.doubts, *told, *plan.remarks]
+    answer = " ".join(sentence for sentence in sentences if sentence)
+    verified = f"by the feedback: {'; '.join(account.done)}" if account.done else "nothing"
+    unseen = "parts of the room that I did not look at"
+    if stage is Stage.OVER:
+        unseen = "what is hidden from the places that I looked from"
+    if account.doubts:
+        unseen += "; " + " ".join(account.doubts)
+    sure = account.sure if account.done else _NOTHING_FOUND
     confidence = round(min(max(sure, 0.05), 0.98), 2)
-    return Finish(final_answer(plan, memory), verified, unseen, confidence)
+    return Finish(answer or "I did nothing.", verified, unseen, confidence)
+
+
+def not_met(plan: Plan, memory: Memory, prompt: Prompt) -> Finish:
+    """The end of an instruction whose condition does not hold, or cannot be told."""
+    assert plan.condition is not None
+    holds = verdict(plan.condition, OF_CONDITION, memory, prompt)
+    why = tell(plan.condition, OF_CONDITION, memory, prompt, Stage.OVER)
+    if holds is None:
+        return Finish(f"I did nothing, because I cannot tell whether that is so. {why}", "nothing")
+    return Finish(f"I did nothing, because that is not so. {why}", f"by what I saw: {why}")
+
+
+def _summary(account: _Account) -> str:
+    if not account.done and not account.missed:
+        return ""
+    if not account.missed and account.open_ended:
+        return f"As far as I can tell: {'; '.join(account.done)}."
+    if not account.missed:
+        return f"Done: {'; '.join(account.done)}."
+    if not account.done:
+        return f"Not done: {'; '.join(account.missed)}."
+    return f"Partly done: {'; '.join(account.done)}. Not done: {'; '.join(account.missed)}."
+
+
+def _tell_goal(goal: Goal, index: int, memory: Memory, prompt: Prompt, account: _Account) -> None:
+    jobs = [job for job in memory.jobs if job.goal == index]
+    target = goal.target
+    if not jobs:
+        account.missed.append(_not_found(goal, index, memory))
+        return
+    for job in jobs:
+        said = claim(goal, index, job.tag, memory, prompt.room)
+        if said:
+            account.done.append(said)
+            account.sure = min(account.sure, _fit(job, memory))
+        else:
+            account.missed.append(_why(goal, job, memory))
+    if target.every and target.count and len(jobs) < target.count:
+        tags = _and([job.tag for job in jobs])
+        account.missed.append(f"I found only {len(jobs)} of {target.count} ({tags})")
+    if target.every and not target.count and not target.ids:
+        account.open_ended = True
+    _identity(goal, index, jobs, memory, account)
+
+
+def _identity(goal: Goal, index: int, jobs: list[Job], memory: Memory, account: _Account) -> None:
+    """Say which was taken where several fit, and where looks had to decide."""
+    target = goal.target
+    if not target.ids:
+        unsure = [job.tag for job in jobs if _fit(job, memory) < _SURE]
+        opaque = [j.tag for j in jobs if class_of(j.tag) is None and j.tag not in unsure]
+        if unsure:
+            account.open_ended = True
+            account.doubts.append(f"I am not sure that {_and(unsure)} is {target.text}.")
+        if opaque and (target.classes or target.by_looks):
+            account.doubts.append(f"By the looks I took {_and(opaque)} for {target.text}.")
+    if target.every or target.ids or target.size or len(jobs) != 1 or target.but:
+        return
+    fits = memory.fits.get(("goal", index), {})
+    others = sorted(t for t, fit in fits.items() if fit >= _SURE and t in memory.things)
+    if len(others) > 1 and jobs[0].tag in others:
+        which = _and(others) if len(others) <= _FEW else f"{len(others)} things"
+        account.doubts.append(f"Several fit '{target.text}' ({which}); I chose {jobs[0].tag}.")
+
+
+def _not_found(goal: Goal, index: int, memory: Memory) -> str:
+    target = goal.target
+    words = f"I found {'nothing that is' if target.every and not target.classes else 'no'} "
+    words += bare(target).removeprefix("any ")
+    kin = [tag for tag in memory.things if class_of(tag) in target.classes]
+    if target.by_looks and kin:
+        looks = [f"{t} looks {memory.looks[t]}" for t in kin if t in memory.looks]
+        return f"{words}; of that kind I saw only {_and(sorted(kin))}" + (
+            f" ({', '.join(looks)})" if looks else ""
+        )
+    if target.classes and kin:
+        return f"{words} besides {_and(sorted(kin))}"
+    del index
+    return words
+
+
+def _why(goal: Goal, job: Job, memory: Memory) -> str:
+    """What is to be said of a thing that is not where it was wished."""
+    tag = job.tag
+    if goal.relation is Relation.HOLD and memory.hand and memory.hand != tag:
+        return f"my hand holds one thing only and has {memory.hand}, so I did not take {tag}"
+    now = f"{tag} rests {memory.rests[tag]}" if tag in memory.rests else f"I did not move {tag}"
+    if memory.hand == tag:
+        now = f"I still hold {tag}"
+    return f"{now}, because {_reason(goal, job, memory)}"
+
+
+def _reason(goal: Goal, job: Job, memory: Memory) -> str:
+    anchor = goal.anchor and anchor_of(job.goal, memory)
+    if goal.relation in (Relation.SURFACE, Relation.UNDER):
+        return f"I found no {goal.furniture} that I could tell to be one"
+    if goal.anchor and anchor is None:
+        return f"I found no {bare(goal.anchor).removeprefix('any ')}"
+    if refused := memory.refusals.get(job.tag):
+        return f"I was told: '{refused.strip().rstrip('.')}'"
+    if job.status is Status.TODO:
+        return "I did not get to it"
+    return "I found no free place where that holds"
+
+
+def _tell_act(act: Act, index: int, memory: Memory, account: _Account) -> None:
+    what = act.target.text if act.target else act.text
+    if memory.acts <= index:
+        account.missed.append(f"I did not {act.name} {what}".rstrip())
+    elif act.name == "walk":
+        account.done.append(memory.walked.partition(": ")[2].rstrip(". ") or "walked")
+    elif act.target:
+        seen = [t for t, f in memory.fits.get(("act", index), {}).items() if f >= _SURE]
+        account.done.append(f"I turned my eyes to {_and(sorted(seen)[:1]) if seen else what}")
+    else:
+        account.done.append("I turned my eyes as asked")
 
 
 def _fit(job: Job, memory: Memory) -> float:
     return memory.fits.get(("goal", job.goal), {}).get(job.tag, 0.0)
-
-
-def final_answer(plan: Plan, memory: Memory) -> str:
-    """A short, truthful report on every goal.
-
-    Args:
-        plan: What was asked.
-        memory: What was done.
-    """
-    done: list[str] = []
-    missed: list[str] = []
-    for index, goal in enumerate(plan.goals):
-        jobs = [job for job in memory.jobs if job.goal == index]
-        good = [_named(goal, job) for job in jobs if job.status is Status.DONE]
-        bad = [_named(goal, job) for job in jobs if job.status is not Status.DONE]
-        if good:
-            done.append(f"{_and(good)} {'is' if len(good) == 1 else 'are'} {_place(goal)}")
-        if bad:
-            missed.append(f"{_and(bad)} not {_place(goal)}, {_why(goal, index, memory)}")
-        if not jobs:
-            what = "anything that is one of" if goal.target.every else ""
-            missed.append(f"I could not find {what} {goal.target.text}".replace("  ", " "))
-    if not missed:
-        return f"Done: {'; '.join(done)}."
-    if not done:
-        return f"Not done: {'; '.join(missed)}."
-    return f"Partly done: {'; '.join(done)}. Not done: {'; '.join(missed)}."
-
-
-def _named(goal: Goal, job: Job) -> str:
-    """A thing as the user called it, with its tag."""
-    return job.tag if goal.target.every else f"{goal.target.text} ({job.tag})"
-
-
-def _why(goal: Goal, index: int, memory: Memory) -> str:
-    if goal.relation is Relation.HOLD and memory.hand:
-        return f"because my hand holds one object only and has {memory.hand}"
-    if goal.relation is Relation.NEAR and not memory.fits.get(("place", index)):
-        return f"because I could not find {goal.anchor.text if goal.anchor else 'the place'}"
-    return "although I tried"
-
-
-def _place(goal: Goal) -> str:
-    match goal.relation:
-        case Relation.HOLD:
-            return "in my hand"
-        case Relation.FLOOR:
-            return "on the floor"
-        case Relation.CORNER:
-            return "on the floor in a corner of the room"
-        case Relation.SURFACE:
-            return f"on the {goal.furniture}"
-        case Relation.NEAR:
-            return f"near {goal.anchor.text if goal.anchor else 'it'}"
 
 
 def _and(tags: list[str]) -> str:

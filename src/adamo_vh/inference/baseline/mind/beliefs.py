@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from adamo_vh.inference.baseline.language.plan import Description, Plan
-from adamo_vh.inference.baseline.mind import ledger
-from adamo_vh.inference.baseline.mind.choosing import degree, thing_of
-from adamo_vh.inference.baseline.mind.happenings import FAR_M, happened
-from adamo_vh.inference.baseline.mind.memory import Memory, Search, Slot, Thing
+from adamo_vh.inference.baseline.language.plan import Ask, Description, Plan, Question
+from adamo_vh.inference.baseline.mind import notes
+from adamo_vh.inference.baseline.mind.choosing import WELL_SEEN_PX, degree, thing_of
+from adamo_vh.inference.baseline.mind.happenings import FAR_M, came_to_rest, happened, taken
+from adamo_vh.inference.baseline.mind.memory import Memory, Search, Slot, Stand, Thing
 from adamo_vh.inference.baseline.prompt.reading import Event, Prompt, Turn
 from adamo_vh.inference.baseline.sight.closeups import closeup_sight
-from adamo_vh.inference.baseline.sight.kinds import Beliefs, class_of, classify, likeliest
+from adamo_vh.inference.baseline.sight.kinds import (
+    Beliefs,
+    class_of,
+    classify,
+    likeliest,
+    prototypes,
+)
 from adamo_vh.inference.baseline.sight.looking import boxed, sights
-from adamo_vh.inference.baseline.sight.measures import Sight
+from adamo_vh.inference.baseline.sight.measures import Sight, colour_words
 from adamo_vh.inference.baseline.sight.printed import WordReader
 
 _NEVER_M = 99.0
+OF_CONDITION = 99
+"""The condition counts as a further question, with this number."""
 _CLOSER = 0.9
 """A view from less than this share of the former distance replaces what was believed."""
 
@@ -31,15 +40,19 @@ def recalled(prompt: Prompt, plan: Plan) -> Memory:
     """
     memory = Memory()
     turns = since_whole(prompt.turns)
-    memory.things.update(ledger.things_noted(turn.note for turn in turns))
+    memory.things.update(notes.things_noted(turn.note for turn in turns))
     for tag, listed in prompt.told.items():
         memory.things[tag] = thing_of(tag, listed.position, listed.volume_cm3)
     memory.seen_m.update(prompt.told_from_m)
-    names = {ledger.short_of(tag): tag for tag in memory.things}
+    _earlier(prompt, memory)
+    for turn in prompt.turns[: len(prompt.turns) - len(turns)]:
+        for event in turn.events:
+            if event.name == "Drop" and event.outcome in ("done", "corrected"):
+                came_to_rest(event, memory)
     for number, turn in enumerate(turns, len(prompt.turns) - len(turns) + 1):
-        entry = ledger.read(turn.note)
+        entry = notes.read(turn.note)
         newer = {tag for tag, at in prompt.told_at.items() if at >= number}
-        ledger.apply(entry, memory, names, newer)
+        notes.apply(entry, memory, newer)
         for tag in memory.kinds.keys() & memory.things.keys():
             thing = memory.things[tag]
             memory.things[tag] = thing_of(tag, thing.position, thing.volume_cm3, memory.kinds[tag])
@@ -50,12 +63,45 @@ def recalled(prompt: Prompt, plan: Plan) -> Memory:
     judge_by_text(memory, plan)
     if prompt.body.hand is not None:
         memory.hand = "" if prompt.body.hand == "empty" else prompt.body.hand
+    _stand(prompt, memory)
     return memory
+
+
+def _earlier(prompt: Prompt, memory: Memory) -> None:
+    """What former instructions and what was done for them still tell."""
+    for turn in prompt.earlier:
+        entry = notes.read(turn.note)
+        before = Memory()
+        notes.apply(entry, before)
+        memory.home = memory.home or before.home or before.began
+        for tag, thing in before.things.items():
+            memory.things.setdefault(tag, thing)
+        memory.rests.update(before.rests)
+        memory.came_from.update(before.came_from)
+        for event in turn.events:
+            if event.name == "Pick" and event.outcome in ("done", "corrected"):
+                memory.came_from.pop(event.tag, None)
+                taken(event, memory)
+            elif event.name == "Drop" and event.outcome in ("done", "corrected"):
+                memory.hand = ""
+                came_to_rest(event, memory)
+
+
+def _stand(prompt: Prompt, memory: Memory) -> None:
+    """Where the body stood at the instruction, and at the very first."""
+    if memory.began is None and (not prompt.turns or prompt.began):
+        body = prompt.began or prompt.body
+        heading = body.heading_rad
+        if heading is None and body.gaze is not None:
+            to = body.gaze - body.position
+            heading = math.atan2(to.y, to.x)
+        memory.began = Stand(body.position, heading or 0.0)
+    memory.home = memory.home or memory.began
 
 
 def since_whole(turns: tuple[Turn, ...]) -> tuple[Turn, ...]:
     """The turns from the last one on whose note holds all that was known."""
-    starts = [index for index, turn in enumerate(turns) if ledger.read(turn.note).whole]
+    starts = [index for index, turn in enumerate(turns) if notes.read(turn.note).whole]
     return turns[starts[-1] :] if starts else turns
 
 
@@ -80,6 +126,8 @@ def told_by_text(description: Description, tag: str) -> bool:
 
 def needs_pixels(plan: Plan, memory: Memory) -> bool:
     """Whether looks decide what some goal is about that is still open."""
+    if any(question.ask is Ask.COLOUR for question in plan.questions):
+        return True
     return any(
         not told_by_text(description, tag)
         for slot, description in open_slots(plan, memory)
@@ -93,6 +141,30 @@ def slots(plan: Plan) -> Iterable[tuple[Slot, Description]]:
         yield ("goal", index), goal.target
         if goal.anchor:
             yield ("place", index), goal.anchor
+        if goal.second:
+            yield ("second", index), goal.second
+    for index, question in enumerate(plan.questions):
+        yield from _asked("question", "seat", index, question)
+    for index, act in enumerate(plan.acts):
+        if act.target:
+            yield ("act", index), act.target
+    if plan.condition:
+        yield from _asked("if", "seat", OF_CONDITION, plan.condition)
+
+
+def _asked(
+    kind: str, place: str, index: int, question: Question
+) -> Iterable[tuple[Slot, Description]]:
+    if question.target:
+        target = question.target
+        quality = question.quality
+        if question.ask is Ask.COLOUR:
+            target = replace(target, colours=())
+        yield (kind, index), target
+        if quality:
+            yield ("quality", index if kind == "question" else OF_CONDITION), quality
+    if question.place and question.place.anchor:
+        yield (place, index), question.place.anchor
 
 
 def settled(plan: Plan, memory: Memory) -> bool:
@@ -103,7 +175,16 @@ def settled(plan: Plan, memory: Memory) -> bool:
 def open_slots(plan: Plan, memory: Memory) -> Iterable[tuple[Slot, Description]]:
     """Those of which it is not yet known which things they mean."""
     known = {job.goal for job in memory.jobs}
-    return ((slot, d) for slot, d in slots(plan) if slot[1] not in known)
+    of_goals = ("goal", "place", "second")
+    return ((s, d) for s, d in slots(plan) if s[0] not in of_goals or s[1] not in known)
+
+
+def asks_for_colours(plan: Plan) -> bool:
+    """Whether the colours of things are to be told, or borne out."""
+    questions = [*plan.questions, *([plan.condition] if plan.condition else [])]
+    return any(q.ask is Ask.COLOUR or q.quality for q in questions) or any(
+        d.colours or d.part_colours for _, d in slots(plan)
+    )
 
 
 def look(prompt: Prompt, plan: Plan, memory: Memory, reader: WordReader | None) -> None:
@@ -140,7 +221,7 @@ def _compares(plan: Plan, memory: Memory) -> bool:
 def _measure_distances(prompt: Prompt, memory: Memory) -> None:
     """From how near each listed thing was seen, now and before."""
     here, now = prompt.body.position, len(prompt.turns)
-    noted = ledger.things_noted(turn.note for turn in since_whole(prompt.turns))
+    noted = notes.things_noted(turn.note for turn in since_whole(prompt.turns))
     for listed in prompt.things:
         tag = listed.tag
         distance = round(listed.position.horizontal_distance(here), 1)
@@ -164,6 +245,13 @@ def _see(prompt: Prompt, plan: Plan, memory: Memory, looked_at: Mapping[str, Sig
     for tag, is_closer in closer.items():
         if class_of(tag) is None and is_closer and tag in looked_at:
             _take_for(tag, likeliest(beliefs[tag]), memory)
+    if asks_for_colours(plan):
+        for tag, nearer in closer.items():
+            sight = looked_at.get(tag)
+            words = colour_words(sight) if sight else ""
+            clear = prototypes()[likeliest(beliefs[tag])].transparent
+            if words and not clear and (nearer or tag not in memory.looks):
+                memory.looks[tag] = words
     everything = tuple(memory.things.values())
     for slot, description in open_slots(plan, memory):
         fits = memory.fits.setdefault(slot, {})
@@ -171,6 +259,8 @@ def _see(prompt: Prompt, plan: Plan, memory: Memory, looked_at: Mapping[str, Sig
             if tag in memory.inspected or told_by_text(description, tag):
                 continue
             thing, sight = memory.things[tag], looked_at.get(tag)
+            if tag in fits and (sight is None or sight.pixels < WELL_SEEN_PX):
+                continue
             fit = _fit(description, thing, sight, everything, beliefs[tag])
             # The nearest view is believed; of equally near ones, the most favourable.
             fits[tag] = fit if nearer else max(fit, fits.get(tag, 0.0))

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.baseline.language.plan import Description, Goal, Relation, Size
-from adamo_vh.inference.baseline.mind.happenings import anchor_of
+from adamo_vh.inference.baseline.mind.evidence import anchor_of
 from adamo_vh.inference.baseline.mind.memory import Memory, Thing
 from adamo_vh.inference.baseline.mind.searching import Stage
 from adamo_vh.inference.baseline.sight.kinds import (
@@ -27,10 +27,14 @@ _MEMBER = 0.5
 """A thing that fits at least so well belongs to a group."""
 
 
-def needed_fit(stage: Stage) -> float:
-    """How well one thing must fit to be taken: less the more was searched."""
+def needed_fit(stage: Stage, description: Description | None = None) -> float:
+    """How well one thing must fit to be taken: less the more was searched.
+
+    What is told by its looks alone must look so; a kind may be guessed, which the answer says.
+    """
     if stage is Stage.OVER:
-        return _AT_ALL
+        looks_alone = description is not None and description.by_looks and not description.classes
+        return _LIKELY if looks_alone else _AT_ALL
     return _LIKELY if stage is Stage.CLOSE else _SURE
 
 
@@ -46,7 +50,7 @@ def targets(goal: Goal, index: int, memory: Memory, stage: Stage) -> list[str] |
     Returns:
         Tags; None if it takes more looking round to tell.
     """
-    over = stage is Stage.OVER
+    over = stage is Stage.OVER or _contradicted(goal.target, memory, stage)
     if goal.target.compares and not goal.target.ids and stage < Stage.CLOSE:
         return None
     fits = memory.fits.get(("goal", index), {})
@@ -55,16 +59,24 @@ def targets(goal: Goal, index: int, memory: Memory, stage: Stage) -> list[str] |
     free = {t: f for t, f in fits.items() if t in memory.things and t != anchor}
     free = {t: f for t, f in free.items() if t not in taken} or free
     if goal.target.size:
-        best = _extreme(goal.target, free, memory)
+        best = extreme(goal.target, free, memory)
         return best or (None if not over else [])
     if goal.target.every:
         members = _members(goal.target, free)
-        complete = not goal.target.ids or len(members) == len(goal.target.ids)
+        wanted = len(goal.target.ids) or goal.target.count or 0
+        complete = len(members) >= wanted
         return members if over or (members and complete) else None
     if not free:
         return [] if over else None
     fit, tag = max((f, _nearness(t, memory), t) for t, f in free.items())[::2]
-    return [tag] if fit >= needed_fit(stage) else ([] if over else None)
+    return [tag] if fit >= needed_fit(stage, goal.target) else ([] if over else None)
+
+
+def _contradicted(description: Description, memory: Memory, stage: Stage) -> bool:
+    """Whether there are things of the kind, all of them looked at, and none looks as said."""
+    if stage < Stage.CLOSE or not (description.by_looks and description.classes):
+        return False
+    return any(class_of(tag) in description.classes for tag in memory.things)
 
 
 def anchor(goal: Goal, index: int, memory: Memory, stage: Stage) -> Thing | None:
@@ -83,7 +95,7 @@ def _extreme_anchor(goal: Goal, index: int, memory: Memory) -> Thing | None:
     targets_now = {j.tag for j in memory.jobs if j.goal == index}
     known = {t: f for t, f in fits.items() if t in memory.things and t not in targets_now}
     assert goal.anchor is not None
-    best = _extreme(goal.anchor, known, memory)
+    best = extreme(goal.anchor, known, memory)
     if not best:
         return None
     for tag in known:  # the chosen one stays the best fit from now on
@@ -108,21 +120,19 @@ def _members(description: Description, fits: dict[str, float]) -> list[str]:
     return members[: description.count] if description.count else members
 
 
-def _extreme(description: Description, fits: dict[str, float], memory: Memory) -> list[str]:
+def extreme(description: Description, fits: dict[str, float], memory: Memory) -> list[str]:
     """The smallest, largest, tallest or shortest of those that fit; by volume as the text says."""
     things = [memory.things[tag] for tag, fit in fits.items() if fit >= _LIKELY]
     if not things:
         return []
-    match description.size:
-        case Size.SMALLEST:
-            chosen = min(things, key=lambda t: (t.volume_cm3, t.tag))
-        case Size.LARGEST:
-            chosen = max(things, key=lambda t: (t.volume_cm3, t.tag))
-        case Size.SHORTEST:
-            chosen = min(things, key=lambda t: (t.height_m, t.tag))
-        case _:
-            chosen = max(things, key=lambda t: (t.height_m, t.tag))
-    return [chosen.tag]
+    by_height = description.size in (Size.TALLEST, Size.SHORTEST)
+    ordered = sorted(things, key=lambda t: (t.height_m if by_height else t.volume_cm3, t.tag))
+    if description.size in (Size.LARGEST, Size.TALLEST):
+        ordered.reverse()
+    first = description.rank - 1
+    if description.every:  # "the two largest objects"
+        return [t.tag for t in ordered[: description.count or 1]]
+    return [t.tag for t in ordered[first : first + 1]]
 
 
 def _nearness(tag: str, memory: Memory) -> float:
@@ -132,6 +142,11 @@ def _nearness(tag: str, memory: Memory) -> float:
 
 _NEAR_SOURCE_M = 0.6
 _FLOOR_BOTTOM_M = 0.1
+_LEFT_OUT = 0.5
+_CONTRADICTS = 0.25
+"""Looks that fit less speak against what is said."""
+_NOT_MADE_OUT = 0.4
+WELL_SEEN_PX = 60
 _A_WORD = 3
 """Letters from which what was read is a word."""
 
@@ -159,6 +174,8 @@ def degree(
         bare = thing.tag.lower().rsplit("_", 1)[-1]
         return 1.0 if {bare, thing.tag.lower()} & set(description.ids) else 0.0
     beliefs = beliefs or classify(thing.tag, thing.volume_cm3, sight)
+    if any(degree(left, thing, sight, others, beliefs) >= _LEFT_OUT for left in description.but):
+        return 0.0
     factors = _factors(description, thing, beliefs, sight)
     if description.source:
         factors.append(_from_there(description.source, thing, others))
@@ -177,23 +194,48 @@ def _factors(
         fits = [beliefs.get(n, 0.0) * 0.85**i for i, n in enumerate(description.classes)]
         factors.append(max(fits))
         if class_of(thing.tag):
-            # The noun has settled it; looks only tell things of one class apart.
-            soft = _looks(description, beliefs, sight)
-            return factors + [0.5 + f / 2 for f in soft]
-    return factors + _looks(description, beliefs, sight)
+            said = [_said(f, sight, seen) for f, seen in _looks(description, beliefs, sight)]
+            return [min([*factors, *said])]
+    looks = _looks(description, beliefs, sight)
+    if description.classes and any(f < _CONTRADICTS for f, seen in looks if seen and _well(sight)):
+        return [0.0]
+    return factors + [f for f, _ in looks]
 
 
-def _looks(description: Description, beliefs: Beliefs, sight: Sight | None) -> list[float]:
-    factors = [_colour(colour, beliefs, sight) for colour in description.colours]
+def _well(sight: Sight | None) -> bool:
+    return sight is not None and sight.pixels >= WELL_SEEN_PX
+
+
+def _said(fit: float, sight: Sight | None, seen: bool) -> float:
+    """How far looks bear out what is said of a thing whose noun is settled.
+
+    Args:
+        fit: How well they do.
+        sight: Its pixels.
+        seen: Whether pixels decide, not usual knowledge about the kind.
+    """
+    if seen and not _well(sight):
+        return _NOT_MADE_OUT
+    return 0.0 if fit < _CONTRADICTS else 0.5 + fit / 2
+
+
+def _looks(
+    description: Description, beliefs: Beliefs, sight: Sight | None
+) -> list[tuple[float, bool]]:
+    """For each thing that is said of the looks: how well they fit, and whether pixels decide."""
+    factors = [(_colour(colour, beliefs, sight), True) for colour in description.colours]
     factors += [
-        _white(beliefs, sight) if colour == "white" else _part_colour(colour, beliefs, sight)
+        (
+            _white(beliefs, sight) if colour == "white" else _part_colour(colour, beliefs, sight),
+            True,
+        )
         for colour in description.part_colours
     ]
-    factors += [_shape(shape, beliefs, sight) for shape in description.shapes]
+    factors += [(_shape(shape, beliefs, sight), False) for shape in description.shapes]
     if description.transparent:
-        factors.append(_expect(beliefs, lambda p: 0.95 if p.transparent else 0.02))
+        factors.append((_expect(beliefs, lambda p: 0.95 if p.transparent else 0.02), False))
     if description.label:
-        factors.append(_label(beliefs, sight))
+        factors.append((_label(beliefs, sight), True))
     return factors
 
 

@@ -28,7 +28,9 @@ class Search(StrEnum):
     NEARER = "l"
     """A look at it from there."""
     ASIDE = "a"
-    """Puts a thing away to have the hand free."""
+    """Puts a thing away to have the hand free, or back."""
+    ACT = "b"
+    """An act of the body that was asked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +63,16 @@ class Thing:
         return max(0.0, self.position.z - self.height_m / 2)
 
 
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """Where the body stands and whereto it faces."""
+
+    position: Vec3
+    heading_rad: float
+
+
 Slot = tuple[str, int]
-"""("goal" or "place", index of the goal): one description of the plan."""
+"""("goal", "place", "second", "question" or "act", index): one description of the plan."""
 
 
 @dataclass(slots=True)
@@ -75,6 +85,14 @@ class Memory:
     """How many steps were made to see far things from nearby."""
     aside: int = 0
     """How often something was put aside to empty the hand."""
+    acts: int = 0
+    """How many of the acts that were asked for are done."""
+    decided: bool | None = None
+    """Whether the condition of the instruction holds, once that is known."""
+    began: Stand | None = None
+    """Where the body stood when the instruction was given."""
+    home: Stand | None = None
+    """Where it stood at the very first."""
     hand: str = ""
     """Tag in the hand, as far as known; empty for none."""
     jobs: list[Job] = field(default_factory=list)
@@ -89,6 +107,22 @@ class Memory:
     """What things behind opaque tags seem to be, by their looks."""
     inspected: set[str] = field(default_factory=set)
     """Things that were seen close up."""
+    looks: dict[str, str] = field(default_factory=dict)
+    """The main colours of things, in words."""
+    rests: dict[str, str] = field(default_factory=dict)
+    """What things rest on, in the words of the feedback, e.g. "on the sideboard"."""
+    supports: list[tuple[Vec3, str]] = field(default_factory=list)
+    """Places at which feedback named what is there."""
+    aims: list[Vec3] = field(default_factory=list)
+    """Points that things were to be put at."""
+    came_from: dict[str, Vec3] = field(default_factory=dict)
+    """Where things were before they were first taken."""
+    refusals: dict[str, str] = field(default_factory=dict)
+    """Why things could not be taken or put, in the words of the feedback."""
+    edges: dict[str, float] = field(default_factory=dict)
+    """Of things that were put beyond an edge: how far from there they came to rest, metres."""
+    walked: str = ""
+    """Feedback of the latest walk."""
 
     def job(self, goal: int, tag: str) -> Job | None:
         """The job of a thing in a goal."""
@@ -109,6 +143,10 @@ class Memory:
         twin.fits = {slot: dict(fits) for slot, fits in self.fits.items()}
         twin.things, twin.seen_m = dict(self.things), dict(self.seen_m)
         twin.kinds, twin.inspected = dict(self.kinds), set(self.inspected)
+        twin.looks, twin.rests = dict(self.looks), dict(self.rests)
+        twin.came_from, twin.refusals = dict(self.came_from), dict(self.refusals)
+        twin.aims = list(self.aims)
+        twin.supports, twin.edges = list(self.supports), dict(self.edges)
         return twin
 
 
@@ -124,6 +162,8 @@ class Move:
     arguments: Arguments = ()
     search: Search = Search.NONE
     confidence: float = 0.9
+    origin: Vec3 | None = None
+    """Where a thing that is picked is now."""
 
     @property
     def tag(self) -> str:
@@ -141,6 +181,8 @@ class Move:
     def describe(self) -> str:
         """The call in a few words."""
         words = [self.name, self.tag] if self.tag else [self.name]
+        if self.origin is not None:
+            words.append(f"from {self.origin}")
         if self.point is not None:
             words.append(f"{'at' if self.name == 'Drop' else 'to'} {self.point}")
         return " ".join(words)

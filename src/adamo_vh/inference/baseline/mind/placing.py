@@ -3,62 +3,37 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
-from adamo_vh.geometry import Array, Vec3
-from adamo_vh.inference.baseline.language.plan import Goal, Relation
-from adamo_vh.inference.baseline.mind.memory import Job, Memory, Thing
-from adamo_vh.inference.baseline.prompt.reading import Prompt, Room
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline.language.plan import SIDES, Goal, Relation
+from adamo_vh.inference.baseline.mind.evidence import (
+    FAR_FROM_M,
+    LEVEL_M,
+    axes,
+    same_level,
+    second_of,
+    shifted,
+)
+from adamo_vh.inference.baseline.mind.footprints import (
+    apart,
+    around,
+    flat,
+    gap,
+    hull_of,
+    inside,
+    outside,
+    pick_apart,
+    radius_of,
+    surface_hull,
+)
+from adamo_vh.inference.baseline.mind.furniture import candidates, heights, surface_level
+from adamo_vh.inference.baseline.mind.memory import Job, Memory, Stand, Thing
+from adamo_vh.inference.baseline.prompt.reading import Prompt
 
 _GAP_M = 0.02
-_LEVEL_M = 0.12
-"""Things whose bottoms differ by less are taken to stand on the same surface."""
-_FURNITURE_HEIGHTS_M = {
-    "coffee": (0.25, 0.56),
-    "sideboard": (0.45, 0.95),
-    "cabinet": (0.45, 1.0),
-    "cupboard": (0.45, 1.0),
-    "shelf": (0.9, 2.1),
-    "bookshelf": (0.9, 2.1),
-    "sofa": (0.25, 0.6),
-    "couch": (0.25, 0.6),
-    "chair": (0.35, 0.6),
-    "table": (0.6, 0.95),
-}
-"""Usual heights of the surfaces of furniture, by the word that names it."""
-
-
-def same_level(one: Thing, other: Thing) -> bool:
-    """Whether two things seem to stand equally high."""
-    return abs(one.bottom_z - other.bottom_z) < _LEVEL_M
-
-
-def place_reached(
-    relation: Relation, thing: Thing, anchor: Thing | None, room: Room, on_floor: bool
-) -> bool:
-    """Whether a thing rests where it should, judged by where it is said to rest."""
-    p = thing.position
-    match relation:
-        case Relation.FLOOR:
-            return on_floor
-        case Relation.CORNER:
-            half = room.corner_m / 2
-            return on_floor and any(
-                abs(p.x - c.x) <= half and abs(p.y - c.y) <= half for c in room.corners()
-            )
-        case Relation.NEAR:
-            return (
-                anchor is not None
-                and p.horizontal_distance(anchor.position) <= room.near_m
-                and on_floor == (anchor.bottom_z < _LEVEL_M)
-                and same_level(thing, anchor)
-            )
-        case Relation.SURFACE:
-            return not on_floor
-        case Relation.HOLD:
-            return False
 
 
 def floor_spot(prompt: Prompt, memory: Memory, thing: Thing, near: Vec3 | None, turn: int) -> Vec3:
@@ -73,41 +48,30 @@ def floor_spot(prompt: Prompt, memory: Memory, thing: Thing, near: Vec3 | None, 
     """
     body, room = prompt.body.position, prompt.room
     others = [t for t in memory.things.values() if t.tag != thing.tag]
-    raised = [t.position for t in others if t.bottom_z >= _LEVEL_M]
-    raised += [p for p in prompt.points if 0.1 < p.z < 1.2 and _inside(room, p, 0.15)]
-    lying = [t for t in others if t.bottom_z < _LEVEL_M]
-    high, low = _flat(raised), _flat([t.position for t in lying])
-    radii_m = np.array([_radius(t) for t in lying])
+    raised = [t.position for t in others if t.bottom_z >= LEVEL_M]
+    raised += [p for p in prompt.points if 0.1 < p.z < 1.2 and inside(room, p, 0.15)]
+    lying = [t for t in others if t.bottom_z < LEVEL_M]
+    high, low = flat(raised), flat([t.position for t in lying])
+    radii_m = np.array([radius_of(t) for t in lying])
     middle = near or body
     radii = (0.3, 0.45, 0.6, 0.75) if near else (0.55, 0.65, 0.75, 0.85)
-    around = [
-        (radius, _around(middle, radius, turn_rad, 0.0))
+    ring = [
+        (radius, around(middle, radius, turn_rad, 0.0))
         for radius in radii
         for turn_rad in np.arange(0.0, 2 * math.pi, math.pi / 12)
     ]
-    spots = [(r, s) for r, s in around if _inside(room, s, 0.25 + thing.width_m / 2)]
+    spots = [(r, s) for r, s in ring if inside(room, s, 0.25 + thing.width_m / 2)]
     if not spots:
         return room.clamp(Vec3(body.x, body.y, 0.0), 0.5)
-    flat = _flat([spot for _, spot in spots])
-    free = (_apart(flat, low) - radii_m).min(axis=1, initial=9.0) - _radius(thing)
-    clear = _apart(flat, high).min(axis=1, initial=9.0)
+    spots_flat = flat([spot for _, spot in spots])
+    free = (apart(spots_flat, low) - radii_m).min(axis=1, initial=9.0) - radius_of(thing)
+    clear = apart(spots_flat, high).min(axis=1, initial=9.0)
     # A hand's breadth between things; far enough from furniture, then close to hand.
     scores = (
         4 * np.minimum(free, 0.08) + np.minimum(clear, 0.7) - 0.1 * np.array([r for r, _ in spots])
     )
     scored = [(float(score), spot) for score, (_, spot) in zip(scores, spots, strict=True)]
-    return _pick_apart(scored, turn, 0.4)
-
-
-def _flat(points: Sequence[Vec3]) -> Array:
-    """Where points are on the floor plan, (N, 2)."""
-    return np.array([(p.x, p.y) for p in points]).reshape(-1, 2)
-
-
-def _apart(spots: Array, places: Array) -> Array:
-    """Distances from each spot to each place on the floor plan, (spots, places)."""
-    off = spots[:, None] - places
-    return np.asarray(np.hypot(off[..., 0], off[..., 1]))
+    return pick_apart(scored, turn, 0.4)
 
 
 def corner_spot(prompt: Prompt, memory: Memory, thing: Thing, turn: int) -> Vec3:
@@ -115,14 +79,14 @@ def corner_spot(prompt: Prompt, memory: Memory, thing: Thing, turn: int) -> Vec3
     body = prompt.body.position
     corners = sorted(prompt.room.corners(), key=body.horizontal_distance)
     corner = corners[turn % len(corners)]
-    lying = [t for t in memory.things.values() if t.tag != thing.tag and t.bottom_z < _LEVEL_M]
+    lying = [t for t in memory.things.values() if t.tag != thing.tag and t.bottom_z < LEVEL_M]
     reach = prompt.room.corner_m / 2 - 0.1
-    spots = [corner] + [_around(corner, reach * 0.7, k * math.pi / 4, 0.0) for k in range(8)]
+    spots = [corner] + [around(corner, reach * 0.7, k * math.pi / 4, 0.0) for k in range(8)]
     scored = [
-        (min(min((_between(s, t) - _radius(thing) for t in lying), default=1.0), 0.1), s)
+        (min(min((gap(s, t) - radius_of(thing) for t in lying), default=1.0), 0.1), s)
         for s in spots
     ]
-    return _pick_apart(scored, 0, 0.0)
+    return pick_apart(scored, 0, 0.0)
 
 
 def near_spot(prompt: Prompt, memory: Memory, thing: Thing, anchor: Thing, turn: int) -> Vec3:
@@ -132,160 +96,211 @@ def near_spot(prompt: Prompt, memory: Memory, thing: Thing, anchor: Thing, turn:
         for t in memory.things.values()
         if t.tag not in (thing.tag, anchor.tag) and same_level(t, anchor)
     ]
-    hull = _surface_hull(prompt, [*others, anchor], anchor.bottom_z)
+    hull = surface_hull(prompt, [*others, anchor], anchor.bottom_z)
     limit = prompt.room.near_m - 0.02
-    least = min(_radius(anchor) + _radius(thing) + _GAP_M, limit)
+    least = min(radius_of(anchor) + radius_of(thing) + _GAP_M, limit)
     level = surface_level(prompt, anchor)
     scored = []
     for distance in np.linspace(least, limit, 4):
         for angle in np.arange(0.0, 2 * math.pi, math.pi / 18):
-            spot = _around(anchor.position, float(distance), float(angle), level)
-            if not _inside(prompt.room, spot, 0.05):
+            spot = around(anchor.position, float(distance), float(angle), level)
+            if not inside(prompt.room, spot, 0.05):
                 continue
-            free = min((_between(spot, t) - _radius(thing) for t in others), default=1.0)
-            outside = _outside(hull, spot, _radius(thing))
+            free = min((gap(spot, t) - radius_of(thing) for t in others), default=1.0)
+            beyond = outside(hull, spot, radius_of(thing))
             closeness = prompt.body.position.horizontal_distance(spot)
-            score = 4 * min(free - _GAP_M, 0.03) - 3 * outside - 0.1 * float(distance)
+            score = 4 * min(free - _GAP_M, 0.03) - 3 * beyond - 0.1 * float(distance)
             scored.append((score - 0.02 * closeness, spot))
-    return _pick_apart(scored, turn, 0.12) if scored else anchor.position
+    return pick_apart(scored, turn, 0.12) if scored else anchor.position
+
+
+def beside_spot(prompt: Prompt, memory: Memory, goal: Goal, thing: Thing, anchor: Thing) -> Vec3:
+    """A free spot left of, right of, in front of or behind a thing, as the viewer sees it."""
+    far = goal.distance_m or max(radius_of(anchor) + radius_of(thing) + 2 * _GAP_M, 0.18)
+    way = {"front": "back", "behind": "front"}.get(goal.relation.value, goal.relation.value)
+    level = surface_level(prompt, anchor)
+    scored = []
+    for distance in (far, far + 0.05, far + 0.1) if goal.distance_m is None else (far,):
+        middle = shifted(anchor.position, way, distance, memory.began)
+        heading = math.atan2(middle.y - anchor.position.y, middle.x - anchor.position.x)
+        for turn in np.linspace(-0.6, 0.6, 7):
+            spot = around(anchor.position, distance, heading + float(turn), level)
+            scored.append((_freedom(prompt, memory, thing, anchor, spot) - 0.02 * abs(turn), spot))
+    return pick_apart(scored, _tries(memory, thing.tag), 0.08)
+
+
+def between_spot(prompt: Prompt, memory: Memory, thing: Thing, one: Thing, other: Thing) -> Vec3:
+    """A free spot about half way between two things."""
+    a, b, level = one.position, other.position, surface_level(prompt, one)
+    across = axes(a, Stand(b, 0.0))[1]
+    scored = []
+    for share in (0.5, 0.4, 0.6, 0.3, 0.7):
+        for aside in (0.0, 0.04, -0.04):
+            spot = Vec3(
+                a.x + share * (b.x - a.x) + aside * across[0],
+                a.y + share * (b.y - a.y) + aside * across[1],
+                level,
+            )
+            freedom = _freedom(prompt, memory, thing, None, spot)
+            scored.append((freedom - 0.1 * abs(share - 0.5), spot))
+    return pick_apart(scored, _tries(memory, thing.tag), 0.05)
+
+
+def far_spot(prompt: Prompt, memory: Memory, goal: Goal, thing: Thing, anchor: Thing) -> Vec3:
+    """A free spot on the floor at some distance from a thing."""
+    least = (goal.distance_m or FAR_FROM_M) + 0.25
+    body, room = prompt.body.position, prompt.room
+    ring = [
+        around(anchor.position, least + more, float(angle), 0.0)
+        for more in (0.0, 0.4, 0.8)
+        for angle in np.arange(0.0, 2 * math.pi, math.pi / 12)
+    ]
+    free = [spot for spot in ring if inside(room, spot, 0.35)]
+    scored = [
+        (_clearance(prompt, memory, thing, spot) - 0.1 * spot.horizontal_distance(body), spot)
+        for spot in free
+    ]
+    return pick_apart(scored, _tries(memory, thing.tag), 0.4) if scored else body
+
+
+def under_spot(memory: Memory, thing: Thing, prompt: Prompt, furniture: str) -> Vec3 | None:
+    """A place on the floor below what stands on furniture of such a height."""
+    low, high = heights(furniture)
+    standing = [
+        t
+        for t in memory.things.values()
+        if t.tag not in (thing.tag, memory.hand) and low <= t.bottom_z <= high
+    ]
+    here = prompt.body.position
+    standing.sort(key=lambda t: t.position.horizontal_distance(here))
+    scored = [(-float(i), Vec3(t.position.x, t.position.y, 0.0)) for i, t in enumerate(standing)]
+    return pick_apart(scored, _tries(memory, thing.tag), 0.15) if scored else None
+
+
+def edge_spot(prompt: Prompt, memory: Memory, thing: Thing) -> Vec3 | None:
+    """A point beyond the edge of what a thing came from: it will rest as near to it as it can."""
+    origin = memory.came_from.get(thing.tag)
+    if origin is None:
+        return None
+    stood = Thing(thing.tag, origin, thing.volume_cm3, thing.width_m, thing.height_m)
+    level = surface_level(prompt, stood)
+    here, tries = prompt.body.position, _tries(memory, thing.tag)
+    others = [t.position for t in memory.things.values() if same_level(t, stood)]
+    points = [p for p in prompt.points if abs(p.z - level) < 0.03]
+    known = [p for p in [*others, *points, origin] if p.horizontal_distance(origin) < 1.5]
+    away, _ = axes(origin, Stand(here, 0.0))
+    outermost = min((p.x - origin.x) * away[0] + (p.y - origin.y) * away[1] for p in known)
+    reach = -min(outermost, 0.0) + 0.1 + 0.12 * tries
+    return Vec3(origin.x - away[0] * reach, origin.y - away[1] * reach, level)
+
+
+def _tries(memory: Memory, tag: str) -> int:
+    return max((job.tries for job in memory.jobs if job.tag == tag), default=0)
+
+
+def _freedom(
+    prompt: Prompt, memory: Memory, thing: Thing, anchor: Thing | None, spot: Vec3
+) -> float:
+    """How free a spot on a surface is, for a comparison."""
+    others = [
+        t
+        for t in memory.things.values()
+        if t.tag != thing.tag and abs(t.bottom_z - spot.z) < LEVEL_M
+    ]
+    free = min((gap(spot, t) - radius_of(thing) for t in others), default=1.0)
+    hull = surface_hull(prompt, [*others, *([anchor] if anchor else [])], spot.z) if others else []
+    beyond = outside(hull, spot, radius_of(thing)) if len(hull) > 2 else 0.0
+    wall = 0.0 if inside(prompt.room, spot, 0.05) else 1.0
+    return 4 * min(free - _GAP_M, 0.03) - beyond - wall
+
+
+def _clearance(prompt: Prompt, memory: Memory, thing: Thing, spot: Vec3) -> float:
+    """How far a spot on the floor is from furniture and from what lies there, up to a point."""
+    raised = [t.position for t in memory.things.values() if t.bottom_z >= LEVEL_M]
+    raised += [p for p in prompt.points if 0.1 < p.z < 1.2 and inside(prompt.room, p, 0.15)]
+    clear = min((spot.horizontal_distance(p) for p in raised), default=9.0)
+    lying = [t for t in memory.things.values() if t.bottom_z < LEVEL_M and t.tag != thing.tag]
+    free = min((gap(spot, t) - radius_of(thing) for t in lying), default=1.0)
+    return min(clear, 0.7) + 4 * min(free, 0.08)
 
 
 def surface_spot(
     prompt: Prompt, memory: Memory, thing: Thing, furniture: str, turn: int
 ) -> Vec3 | None:
-    """A free spot on a piece of furniture, known by the things and points on it; else None."""
-    low, high = next(
-        (span for word, span in _FURNITURE_HEIGHTS_M.items() if word in furniture), (0.3, 1.2)
-    )
-    others = [t for t in memory.things.values() if t.tag != thing.tag]
-    standing = [t for t in others if low <= t.bottom_z <= high]
-    known = [t.position for t in standing] + [p for p in prompt.points if low <= p.z <= high]
-    known = [p for p in known if _inside(prompt.room, p, 0.1)]
-    if not known:
+    """A free spot on what may be such a piece of furniture and was not found to be another.
+
+    Args:
+        prompt: For the points in view.
+        memory: For the things known, and for what feedback named.
+        thing: What is to be put down.
+        furniture: The user's word.
+        turn: How often it was tried before.
+    """
+    found = candidates(prompt, memory, thing.tag, furniture)
+    if not found:
         return None
-    level = float(np.median([t.bottom_z for t in standing] or [p.z for p in known]))
-    hull = _hull(known)
+    surface = found[0]
+    standing = [
+        t
+        for t in memory.things.values()
+        if t.tag != thing.tag and abs(t.bottom_z - surface.level) < 0.06
+    ]
+    hull = hull_of(surface.places)
     scored = []
-    for seed in known:
+    for seed in surface.places:
         for radius in (0.0, 0.15, 0.25):
             for angle in np.arange(0.0, 2 * math.pi, math.pi / 6):
-                spot = _around(seed, radius, float(angle), level)
-                free = min((_between(spot, t) - _radius(thing) for t in standing), default=1.0)
-                outside = _outside(hull, spot, _radius(thing))
-                scored.append((4 * min(free - _GAP_M, 0.05) - 3 * outside, spot))
-    return _pick_apart(scored, turn, 0.3)
-
-
-def surface_level(prompt: Prompt, thing: Thing) -> float:
-    """Height of the surface below a thing: its estimate, made exact by points on the surface."""
-    here = [
-        p.z
-        for p in prompt.points
-        if p.horizontal_distance(thing.position) < 1.2 and abs(p.z - thing.bottom_z) < 0.06
-    ]
-    levels = sorted(here, key=lambda z: (-sum(abs(z - o) < 0.008 for o in here), z))
-    if levels and sum(abs(levels[0] - o) < 0.008 for o in here) >= 2:
-        return levels[0]
-    return thing.bottom_z
-
-
-def _radius(thing: Thing) -> float:
-    """Radius of a circle as large as the footprint: long things count less than they reach."""
-    area = thing.volume_cm3 * 1e-6 / max(thing.height_m, 0.002)
-    return min(math.sqrt(area) * 0.6, thing.width_m * 0.75)
-
-
-def _between(spot: Vec3, thing: Thing) -> float:
-    return spot.horizontal_distance(thing.position) - _radius(thing)
-
-
-def _around(center: Vec3, radius: float, angle: float, z: float) -> Vec3:
-    return Vec3(center.x + radius * math.cos(angle), center.y + radius * math.sin(angle), z)
-
-
-def _inside(room: Room, p: Vec3, margin: float) -> bool:
-    return (
-        room.x_min + margin <= p.x <= room.x_max - margin
-        and room.y_min + margin <= p.y <= room.y_max - margin
-    )
-
-
-def _surface_hull(
-    prompt: Prompt, things: Iterable[Thing], level: float
-) -> list[tuple[float, float]]:
-    known = [t.position for t in things]
-    here = known[-1]
-    known += [
-        p for p in prompt.points if abs(p.z - level) < 0.03 and p.horizontal_distance(here) < 1.5
-    ]
-    return _hull(known)
-
-
-def _hull(points: Sequence[Vec3]) -> list[tuple[float, float]]:
-    """Convex hull in the floor plane, counter-clockwise (Andrew's monotone chain)."""
-    ordered = sorted({(p.x, p.y) for p in points})
-    if len(ordered) < 3:
-        return ordered
-
-    def half(sequence: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-        chain: list[tuple[float, float]] = []
-        for p in sequence:
-            while len(chain) >= 2 and _turn(chain[-2], chain[-1], p) <= 0:
-                chain.pop()
-            chain.append(p)
-        return chain[:-1]
-
-    return half(ordered) + half(reversed(ordered))
-
-
-def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _outside(hull: list[tuple[float, float]], spot: Vec3, radius: float) -> float:
-    """How far a disc reaches beyond what is known of a surface, metres."""
-    if len(hull) < 3:
-        return 0.0
-    worst = 0.0
-    for a, b in zip(hull, hull[1:] + hull[:1], strict=True):
-        edge = math.hypot(b[0] - a[0], b[1] - a[1])
-        if edge > 1e-6:
-            inside = _turn(a, b, (spot.x, spot.y)) / edge
-            worst = max(worst, radius - inside)
-    # Things stand a little in from the edge, so the surface is larger than their centres tell.
-    return max(0.0, worst - 0.1)
-
-
-def _pick_apart(scored: list[tuple[float, Vec3]], turn: int, apart_m: float) -> Vec3:
-    """The best spot; for later turns the best one apart from those named before."""
-    ordered = sorted(scored, key=lambda item: -item[0])
-    named: list[Vec3] = []
-    for _, spot in ordered:
-        if all(spot.horizontal_distance(n) >= apart_m for n in named):
-            named.append(spot)
-            if len(named) > turn:
-                return spot
-    return named[-1]
+                spot = around(seed, radius, float(angle), surface.level)
+                free = min((gap(spot, t) - radius_of(thing) for t in standing), default=1.0)
+                beyond = outside(hull, spot, radius_of(thing))
+                # The fewer places of a surface are known, the nearer to one of them.
+                scored.append((4 * min(free - _GAP_M, 0.05) - 3 * beyond - 0.2 * radius, spot))
+    return pick_apart(scored, turn if surface.sure else 0, 0.3)
 
 
 def spot(
     prompt: Prompt, memory: Memory, goal: Goal, job: Job, thing: Thing, anchor: Thing | None
 ) -> Vec3 | None:
     """Where to put a thing so that its job is done; None if no such place is known."""
+    ways: dict[Relation, Callable[[], Vec3 | None]] = {
+        Relation.CORNER: lambda: corner_spot(prompt, memory, thing, job.tries),
+        Relation.SURFACE: lambda: surface_spot(prompt, memory, thing, goal.furniture, job.tries),
+        Relation.UNDER: lambda: under_spot(memory, thing, prompt, goal.furniture),
+        Relation.EDGE: lambda: edge_spot(prompt, memory, thing),
+        Relation.HOME: lambda: _origin_spot(memory, goal, thing, job.tries),
+        Relation.SHIFT: lambda: _origin_spot(memory, goal, thing, job.tries),
+    }
+    if goal.relation in ways:
+        return ways[goal.relation]()
     match goal.relation:
         case Relation.NEAR if anchor:
             return near_spot(prompt, memory, thing, anchor, job.tries)
-        case Relation.CORNER:
-            return corner_spot(prompt, memory, thing, job.tries)
         case Relation.FLOOR:
             near = anchor.position if anchor else None
             return floor_spot(prompt, memory, thing, near, job.tries)
-        case Relation.SURFACE:
-            return surface_spot(prompt, memory, thing, goal.furniture, job.tries)
+        case Relation.FAR if anchor:
+            return far_spot(prompt, memory, goal, thing, anchor)
+        case Relation.BETWEEN if anchor and (other := second_of(job.goal, memory)):
+            return between_spot(prompt, memory, thing, anchor, other)
+        case _ if goal.relation in SIDES and anchor:
+            return beside_spot(prompt, memory, goal, thing, anchor)
         case _:
             return None
 
 
+def _origin_spot(memory: Memory, goal: Goal, thing: Thing, tries: int) -> Vec3 | None:
+    """Where a thing was, or some way from there."""
+    origin = memory.came_from.get(thing.tag)
+    if origin is None:
+        return None
+    foot = Vec3(origin.x, origin.y, max(0.0, origin.z - thing.height_m / 2))
+    if goal.relation is Relation.HOME:
+        return foot
+    if tries:  # what it stood on may not reach so far
+        foot = Vec3(foot.x, foot.y, 0.0)
+    return shifted(foot, goal.direction, goal.distance_m or 0.25, memory.began)
+
+
 def place_words(point: Vec3) -> str:
     """What feedback would say about a thing put down there."""
-    return "on the floor" if point.z < _LEVEL_M else "on the furniture"
+    return "on the floor" if point.z < LEVEL_M else "on the furniture"

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.baseline.language.plan import Plan, Relation
-from adamo_vh.inference.baseline.mind import choosing, ledger, placing, searching
-from adamo_vh.inference.baseline.mind.answering import finish
+from adamo_vh.inference.baseline.language.plan import Act, Plan, Relation
+from adamo_vh.inference.baseline.mind import asking, choosing, furniture, placing, searching
+from adamo_vh.inference.baseline.mind.answering import finish, not_met, refusal
 from adamo_vh.inference.baseline.mind.beliefs import (
-    judge_by_text,
+    OF_CONDITION,
     look,
     needs_pixels,
     recalled,
-    settled,
-    since_whole,
 )
-from adamo_vh.inference.baseline.mind.happenings import FAR_M, anchor_of, current_job, imagined
+from adamo_vh.inference.baseline.mind.evidence import anchor_of, second_of
+from adamo_vh.inference.baseline.mind.happenings import MAX_TRIES, current_job, imagined
 from adamo_vh.inference.baseline.mind.memory import (
     Finish,
     Job,
@@ -29,6 +27,7 @@ from adamo_vh.inference.baseline.mind.memory import (
     Thing,
     to_point,
 )
+from adamo_vh.inference.baseline.mind.remembering import carried_over
 from adamo_vh.inference.baseline.prompt.reading import Prompt
 from adamo_vh.inference.baseline.prompt.speaking import Manner
 from adamo_vh.inference.baseline.sight.kinds import class_of
@@ -36,10 +35,12 @@ from adamo_vh.inference.baseline.sight.printed import WordReader
 
 _MAX_ASIDE = 4
 """Tries to empty the hand in an episode, after which it stays as it is."""
-_SAME_M = 0.02
-"""Feedback rounds places to a centimetre."""
+
 _DOUBT = 0.5
 """Below this fit a thing is inspected before it is picked."""
+
+_VIEWS_FOR_FURNITURE = 8
+"""Steps of the search after which no further furniture is looked for."""
 
 
 def decide(
@@ -55,25 +56,25 @@ def decide(
     """
     manner = manner or Manner()
     if plan.problem:
-        answer = f"I did nothing, because I did not understand this part: {plan.problem}."
-        return Step(finish=Finish(answer, "nothing was done", "the room was not searched"))
+        return Step(finish=refusal(plan.problem))
     memory = recalled(prompt, plan)
     before = memory.copy()
     look(prompt, plan, memory, reader)
-    turn = _Turn(prompt, plan, memory, manner)
-    move = turn.next_move()
-    if move is None:
-        return Step(finish=finish(plan, memory, turn.stage()))
-    known = memory.copy()
+    turn = Turn(prompt, plan, memory, manner)
+    move, end = turn.first_move()
+    if end is not None:
+        return Step(finish=end)
+    assert move is not None
+    plan, known = turn.plan, memory.copy()
     moves = _plan_on(turn, move, known)
     note = (
         f"Evidence: {_evidence(prompt, known)} Conclusion: {move.conclusion} "
         f"Next: {', '.join(m.describe() for m in moves)}. "
     )
-    return Step(note + _line(prompt, plan, known, before, moves), tuple(moves))
+    return Step(note + carried_over(prompt, plan, known, before, moves), tuple(moves))
 
 
-def _plan_on(turn: _Turn, first: Move, known: Memory) -> list[Move]:
+def _plan_on(turn: Turn, first: Move, known: Memory) -> list[Move]:
     """The calls of a turn: as many as follow without a further view.
 
     What further goals turn out to be about on the way is added to what is known.
@@ -106,79 +107,8 @@ def _follows(move: Move, last: Move) -> bool:
     return True
 
 
-def _line(prompt: Prompt, plan: Plan, memory: Memory, before: Memory, moves: list[Move]) -> str:
-    """The line of the note that carries what the messages do not tell."""
-    numbers = [ledger.read(turn.note).number for turn in prompt.turns]
-    number = (numbers[-1] if numbers else 0) + 1
-    whole = number == 2 or _first_falls_out(prompt)
-    codes = [str(move.search) or "." for move in moves]
-    head = ["q" + "".join(codes)] if any(move.search for move in moves) else []
-    lasting = _lasting(prompt, memory, whole, moves)
-    groups = [
-        index
-        for index, goal in enumerate(plan.goals)
-        if goal.target.compares or (goal.anchor is not None and goal.anchor.compares)
-    ]
-    start = before
-    if whole:
-        start = Memory(things=memory.things)
-        judge_by_text(start, plan)
-        lasting |= _done_with(plan, memory)
-    distances = _distances(plan, memory, start)
-    entry = ledger.Entry(number, whole, head)
-    return ledger.write(memory, start, lasting, groups, distances, entry)
-
-
-def _distances(plan: Plan, memory: Memory, before: Memory) -> list[str]:
-    """Things of which it must be noted from how near they were seen."""
-    if settled(plan, memory):
-        return []
-    new = {tag: m for tag, m in memory.seen_m.items() if before.seen_m.get(tag) != m}
-    if needs_pixels(plan, memory):
-        return list(new)
-    return [tag for tag, m in new.items() if max(m, before.seen_m.get(tag, m)) > FAR_M]
-
-
-def _done_with(plan: Plan, memory: Memory) -> set[str]:
-    """Things that no goal is about any more, once it is known what all goals are about."""
-    if not settled(plan, memory):
-        return set()
-    open_jobs = [job for job in memory.jobs if job.status is Status.TODO]
-    anchors = [anchor_of(job.goal, memory) for job in open_jobs]
-    # Where things were put matters for where to put the next ones.
-    needed = {job.tag for job in memory.jobs} | {thing.tag for thing in anchors if thing}
-    return set(memory.things) - needed - {memory.hand}
-
-
-def _lasting(prompt: Prompt, memory: Memory, whole: bool, moves: list[Move]) -> set[str]:
-    """Things whose places the next prompt will tell without this note."""
-    told = {tag: thing.position for tag, thing in prompt.told.items()}
-    if prompt.lasting:
-        return _still_there(memory, told) & prompt.pinned if whole else set(told)
-    looks = any(move.name == "Look" for move in moves)
-    kept = set() if looks else _still_there(memory, told)
-    if whole:
-        return kept
-    notes = [turn.note for turn in since_whole(prompt.turns)]
-    noted = ledger.things_noted(notes)
-    return kept | _still_there(memory, {tag: thing.position for tag, thing in noted.items()})
-
-
-def _still_there(memory: Memory, places: Mapping[str, Vec3]) -> set[str]:
-    things = memory.things
-    return {t for t, place in places.items() if things[t].position.distance(place) < _SAME_M}
-
-
-def _first_falls_out(prompt: Prompt) -> bool:
-    """Whether older turns have left the prompt, and with the next one the last whole line would."""
-    entries = [ledger.read(turn.note) for turn in prompt.turns]
-    if not entries or entries[0].number <= 1:
-        return False
-    return not any(entry.whole for entry in entries[1:])
-
-
 @dataclass(frozen=True, slots=True)
-class _Turn:
+class Turn:
     """The choice of one call."""
 
     prompt: Prompt
@@ -191,6 +121,25 @@ class _Turn:
         """How far the search is."""
         return searching.stage(self.prompt, self.memory)
 
+    def first_move(self) -> tuple[Move | None, Finish | None]:
+        """The first call, or the end."""
+        if self.plan.condition is not None and self.memory.decided is None:
+            ready = asking.ready(self.plan.condition, OF_CONDITION, self.memory, self.stage())
+            if not ready:
+                return self._search("whether the condition holds"), None
+            self.memory.decided = asking.verdict(
+                self.plan.condition, OF_CONDITION, self.memory, self.prompt
+            )
+        if self.plan.condition is not None and not self.memory.decided:
+            return None, self._otherwise()
+        move = self.next_move()
+        if move is not None:
+            return move, None
+        return None, finish(self.plan, self.memory, self.prompt, self.stage())
+
+    def _otherwise(self) -> Finish:
+        return not_met(self.plan, self.memory, self.prompt)
+
     def next_move(self) -> Move | None:
         """The first call that brings an open goal on; None when all are done or given up."""
         goals = self.plan.goals
@@ -202,7 +151,38 @@ class _Turn:
                 move = self._advance(job)
                 if move:
                     return move
-        return self._let_go()
+        return self._let_go() or self._next_act() or self._find_out()
+
+    def _next_act(self) -> Move | None:
+        """The next act of the body that was asked for."""
+        done = self.memory.acts
+        if done >= len(self.plan.acts):
+            return None
+        act = self.plan.acts[done]
+        if act.target:
+            fits = self.memory.fits.get(("act", done), {})
+            known = [(f, t) for t, f in fits.items() if t in self.memory.things]
+            if not known or max(known)[0] < _DOUBT:
+                if self.stage() is searching.Stage.OVER:
+                    return None
+                return self._search(act.target.text)
+            return self._body(act, self.memory.things[max(known)[1]].position)
+        point = searching.aim(act, self.prompt, self.memory)
+        return self._body(act, point) if point else None
+
+    def _body(self, act: Act, point: Vec3) -> Move:
+        why = f"I was asked to {act.name} {act.target.text if act.target else act.text}.".strip()
+        if act.name == "walk":
+            point = Vec3(point.x, point.y, 0.0)
+        return Move(why, act.name.capitalize(), to_point(point), Search.ACT)
+
+    def _find_out(self) -> Move | None:
+        """A step of the search if a question cannot be answered yet."""
+        for index, question in enumerate(self.plan.questions):
+            if not asking.ready(question, index, self.memory, self.stage()):
+                what = question.target.text if question.target else "what I was asked for"
+                return self._search(what)
+        return None
 
     def _open_jobs(self, goal: int) -> list[Job]:
         jobs = self.memory.jobs
@@ -217,14 +197,23 @@ class _Turn:
         if tags is None:
             return self._search(goal.target.text)
         jobs = [Job(index, tag) for tag in tags]
-        if goal.anchor and tags and goal.relation is Relation.NEAR:
+        if goal.anchor and tags and goal.relation is not Relation.FLOOR:
             trial = replace(memory, jobs=[*memory.jobs, *jobs])
             beside = choosing.anchor(goal, index, trial, stage)
+            if goal.second and beside and second_of(index, trial) is None:
+                beside = None
             if beside is None and stage is not searching.Stage.OVER:
-                return self._search(goal.anchor.text)
+                return self._search((goal.second or goal.anchor).text)
             if beside is None:
                 jobs = [replace(job, status=Status.FAILED) for job in jobs]
             jobs = [job for job in jobs if beside is None or job.tag != beside.tag]
+        if goal.relation in (Relation.SURFACE, Relation.UNDER) and jobs:
+            found = furniture.candidates(self.prompt, memory, jobs[0].tag, goal.furniture)
+            looking = furniture.may_be_found(goal.furniture) and memory.views < _VIEWS_FOR_FURNITURE
+            if looking and not any(surface.firm for surface in found):
+                return self._search(f"the {goal.furniture}")
+            if not found or not (found[0].sure or furniture.may_be_found(goal.furniture)):
+                jobs = [replace(job, status=Status.FAILED) for job in jobs]
         if move := self._inspect_first(index, jobs):
             return move
         memory.jobs.extend(jobs)
@@ -269,7 +258,10 @@ class _Turn:
             return self._approach(job)
         words = f"{job.tag} {self._fit_words(job)}; it must be {goal.wish()}."
         sure = min(max(self._fit(job), 0.05), 0.98)
-        return Move(words, "Pick", (("object", job.tag),), confidence=round(sure, 2))
+        thing = memory.things.get(job.tag)
+        arguments = (("object", job.tag),)
+        origin = thing.position if thing else None
+        return Move(words, "Pick", arguments, confidence=round(sure, 2), origin=origin)
 
     def _approach(self, job: Job) -> Move | None:
         """After a refused pick: look at the thing, then try again."""
@@ -284,12 +276,25 @@ class _Turn:
         goal, memory = self.plan.goals[job.goal], self.memory
         thing = memory.things.get(job.tag) or self._unknown(job.tag)
         spot = placing.spot(self.prompt, memory, goal, job, thing, anchor_of(job.goal, memory))
+        if goal.relation is Relation.SURFACE and job.tries >= MAX_TRIES - 1:
+            spot = None
         if spot is None:
+            if goal.relation is Relation.SURFACE and memory.views < _VIEWS_FOR_FURNITURE:
+                return self._search(f"the {goal.furniture}")
             memory.set_job(replace(job, status=Status.FAILED))
-            return self._drop_at_feet()
+            return self._put_back(thing) or self._drop_at_feet()
         again = " The last place was not good enough." if job.tries else ""
         words = f"{job.tag} is in my hand; it must be {goal.wish()}.{again}"
         return Move(words, "Drop", (("object", job.tag), *to_point(spot)))
+
+    def _put_back(self, thing: Thing) -> Move | None:
+        """What could not be brought to its place goes back where it came from."""
+        origin = self.memory.came_from.get(thing.tag)
+        if origin is None or self.memory.aside >= _MAX_ASIDE:
+            return None
+        foot = Vec3(origin.x, origin.y, max(0.0, origin.z - thing.height_m / 2))
+        words = f"I know no such place for {thing.tag}; I put it back."
+        return Move(words, "Drop", (("object", thing.tag), *to_point(foot)), Search.ASIDE)
 
     def _drop_first(self) -> Move | None:
         """Empty the hand: where the held thing belongs, if a goal says so."""

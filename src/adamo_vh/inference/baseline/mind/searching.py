@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline.language.plan import Act
 from adamo_vh.inference.baseline.mind.happenings import FAR_M
 from adamo_vh.inference.baseline.mind.memory import Memory, Search, Thing
 from adamo_vh.inference.baseline.prompt.reading import Prompt, Room
@@ -17,6 +18,7 @@ _MOST_VISITS = 14
 """Steps at most to see far things from nearby."""
 _LOOKS = 4
 """Views that make a full circle, each a quarter turn on."""
+_MOVED_M = 0.3
 _GAZE_Z_M = 1.0
 _GAZE_AHEAD_M = 2.0
 
@@ -84,6 +86,35 @@ def next_step(prompt: Prompt, memory: Memory) -> SearchStep:
         body.x + _GAZE_AHEAD_M * math.cos(yaw), body.y + _GAZE_AHEAD_M * math.sin(yaw), _GAZE_Z_M
     )
     return SearchStep("Look", _into_room(prompt.room, body, ahead), Search.ROUND)
+
+
+def aim(act: Act, prompt: Prompt, memory: Memory) -> Vec3 | None:
+    """The point to look at or to walk to for an act without a target.
+
+    Args:
+        act: With a direction.
+        prompt: For the room and the body.
+        memory: For where the body stood before.
+    """
+    body, room = prompt.body.position, prompt.room
+    if act.direction == "start":
+        begun = memory.began
+        moved = begun and body.horizontal_distance(begun.position) > _MOVED_M
+        stand = begun if moved else memory.home
+        return stand.position if stand else None
+    if act.direction == "middle":
+        return places(room)[0]
+    if act.direction == "corner":
+        return min(room.corners(), key=body.horizontal_distance)
+    turns = {"left": 90, "right": -90, "back": 180, "round": 120, "up": 0, "down": 0, "ahead": 0}
+    yaw = _heading(prompt) + math.radians(turns.get(act.direction, 0))
+    far = act.distance_m if act.name == "walk" else _GAZE_AHEAD_M
+    ahead = Vec3(body.x + far * math.cos(yaw), body.y + far * math.sin(yaw), _GAZE_Z_M)
+    if act.name == "walk":
+        return room.clamp(Vec3(ahead.x, ahead.y, 0.0), 0.3)
+    point = _into_room(room, body, ahead)
+    height = {"up": 2.4, "down": 0.0}.get(act.direction)
+    return point if height is None else Vec3(point.x, point.y, height)
 
 
 def _far_thing(prompt: Prompt, memory: Memory) -> Thing | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from adamo_vh.geometry import Vec3
@@ -29,6 +29,7 @@ _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _SPAN = re.compile(rf"x from {_NUMBER} to {_NUMBER} and y from {_NUMBER} to {_NUMBER}")
 _CORNER = re.compile(rf"{_NUMBER} x {_NUMBER} m squares")
 _NEAR = re.compile(rf"within {_NUMBER} m horizontally")
+_TAG = re.compile(r"\b[A-Za-z]+_\d+\b")
 _NEW_VIEW = "New view after"
 _CLOSE_UP = "What "
 """How the words before a frame begin that is no view of the eyes."""
@@ -73,6 +74,8 @@ class Event:
     """The feedback alone."""
     pictures: tuple[ImagePart, ...] = ()
     """Close-ups that came with it."""
+    origin: Vec3 | None = None
+    """Where a thing was that it took, as the own note tells."""
 
     @property
     def outcome(self) -> str:
@@ -102,6 +105,8 @@ class Turn:
 
     note: str
     events: tuple[Event, ...]
+    answer: str = ""
+    """What it told the user, if it ended an instruction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +124,10 @@ class Prompt:
     """The latest view."""
     turns: tuple[Turn, ...] = ()
     """The own turns since the instruction, as far as they are in the prompt."""
+    earlier: tuple[Turn, ...] = ()
+    """Those before it: of former instructions."""
+    began: Body | None = None
+    """The body when the instruction was given, where a text still tells it."""
     event: Event | None = None
     """The latest call that was tried; None before the first."""
     fresh: bool = True
@@ -133,6 +142,18 @@ class Prompt:
     """Objects that the instruction's own message lists; it stays in the prompt for good."""
     lasting: bool = False
     """Whether lists stay in the prompt; otherwise the next view's list replaces this one."""
+
+    @property
+    def spoken_of(self) -> tuple[str, ...]:
+        """Tags of former instructions that "it" may mean, the latest first."""
+        tags: list[str] = []
+        if self.body.hand and self.body.hand != "empty":
+            tags.append(self.body.hand)
+        for turn in reversed(self.earlier):
+            handled = [e.tag for e in turn.events if e.name in ("Pick", "Drop") and e.tag]
+            tags += [] if not turn.answer else _TAG.findall(turn.answer)
+            tags += reversed(handled)
+        return tuple(dict.fromkeys(tags))
 
     @property
     def points_key(self) -> tuple[tuple[float, float, float], ...]:
@@ -152,6 +173,8 @@ class _Reader:
     calls: dict[str, tuple[str, Mapping[str, Any]]] = field(default_factory=dict)
     fresh: bool = True
     viewed: int = 0
+    earlier: list[Turn] = field(default_factory=list)
+    began: Body | None = None
     pinned: frozenset[str] = frozenset()
 
     def read(self, message: Message) -> None:
@@ -179,17 +202,21 @@ class _Reader:
             self._view(images)
         elif not self.instruction or images or left_out or len(texts) > 1:
             self.instruction = first.strip()
+            self.earlier += self.turns
             self.turns.clear()
             self.state.turn = 0
             for text in texts[1:]:
                 self.state.read_changes(text)
+            self.began = self.state.body if self.state.views else None
             self.pinned = self.pinned | frozenset(self.state.told)
             self._view(images)
 
     def _own(self, message: AIMessage) -> None:
         arguments = [dict(call.arguments or {}) for call in message.calls]
         notes = [str(a["note"]) for a in arguments if isinstance(a.get("note"), str)]
-        self.turns.append(Turn(message.text or "\n".join(notes), ()))
+        told = [str(a["answer"]) for a in arguments if isinstance(a.get("answer"), str)]
+        answer = told[0] if told else "" if message.calls else message.text
+        self.turns.append(Turn(message.text or "\n".join(notes), (), answer))
         self.state.turn = len(self.turns)
         for call, values in zip(message.calls, arguments, strict=True):
             self.calls[call.id] = (call.name, values)
@@ -205,9 +232,10 @@ class _Reader:
             self._view(pictures[-1:])
             pictures = pictures[:-1]
         if self.turns:
-            event = Event(name, arguments, text, pictures)
             turn = self.turns[-1]
-            self.turns[-1] = Turn(turn.note, (*turn.events, event))
+            origin = first_point(turn.note.partition(f"Pick {arguments.get('object')} from ")[2])
+            event = Event(name, arguments, text, pictures, origin)
+            self.turns[-1] = replace(turn, events=(*turn.events, event))
 
     def _view(self, images: Sequence[ImagePart]) -> None:
         self.fresh = True
@@ -219,8 +247,8 @@ class _Reader:
         turn = self.turns[-1]
         if turn.events:
             last = turn.events[-1]
-            event = Event(last.name, last.arguments, last.text, (*last.pictures, *images))
-            self.turns[-1] = Turn(turn.note, (*turn.events[:-1], event))
+            event = replace(last, pictures=(*last.pictures, *images))
+            self.turns[-1] = replace(turn, events=(*turn.events[:-1], event))
 
 
 def read_prompt(messages: Sequence[Message]) -> Prompt:
@@ -242,6 +270,8 @@ def read_prompt(messages: Sequence[Message]) -> Prompt:
         body=state.body,
         frame=reader.frame,
         turns=tuple(reader.turns),
+        earlier=tuple(reader.earlier),
+        began=reader.began if not reader.turns or state.views else None,
         event=tried[-1] if tried else None,
         fresh=reader.fresh,
         told=state.told,

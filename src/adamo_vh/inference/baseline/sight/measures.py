@@ -36,6 +36,12 @@ _WHITE_FROM = (145, 165)
 _SHADE = 0.68
 """Brightness of white in the shade, as a share of white in the light."""
 _BROWN_BELOW = 140
+_ENOUGH_PX = 150
+_SEE_THROUGH = 0.5
+_MAIN_SHARE = 0.45
+"""Share from which on a colour is said to be that of a thing."""
+_ON_EVERYTHING = 0.2
+"""Share of black, grey and white that shadows and highlights make."""
 _SAMPLES = 8000
 """Pixels that are enough to tell the light."""
 
@@ -120,3 +126,15 @@ class Sight:
     def share(self, colour: str) -> float:
         """Share of one colour."""
         return self.colours.get(colour, 0.0)
+
+
+def colour_words(sight: Sight) -> str:
+    """The main colour in words, e.g. "orange"; empty if none can be told for sure."""
+    if sight.pixels < _ENOUGH_PX or sight.clear > _SEE_THROUGH:
+        return ""
+    shares = {
+        name: share - (_ON_EVERYTHING if name in ("grey", "black", "white") else 0.0)
+        for name, share in sight.colours.items()
+    }
+    ordered = sorted(shares, key=lambda name: (-shares[name], name))
+    return ordered[0] if ordered and shares[ordered[0]] >= _MAIN_SHARE else ""

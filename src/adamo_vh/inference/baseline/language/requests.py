@@ -1,0 +1,330 @@
+"""What an instruction asks for in all: wishes, questions, acts, conditions, what not to do."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import lru_cache
+
+from adamo_vh.inference.baseline.language.grammar import read_things, wishes
+from adamo_vh.inference.baseline.language.plan import Act, Plan
+from adamo_vh.inference.baseline.language.questions import read_question, read_statement
+from adamo_vh.inference.baseline.language.rephrasing import rephrased
+from adamo_vh.inference.baseline.language.spelling import known_words, spelled
+
+CAN = (
+    "I can pick things up, put them on the floor, in a corner, on furniture, back, or beside, "
+    "between or away from other things, look, walk, and tell what I see."
+)
+_NOT = re.compile(
+    r"^(?:please |and |but |so |also )*(?:do not|don't|dont|never|you must not|you should not|"
+    r"must not|mustn't|shouldn't|you may not|avoid|refrain from|there is no need to|no need to|"
+    r"not)\b ?(?:ever )?(.*)$"
+)
+_IF = re.compile(
+    r"^(?:only )?(?:if|in case|provided that|provided) (?P<condition>.+?)"
+    r"(?:, ?(?:then )?| then )(?P<wish>.+?)"
+    r"(?:[,;.]? ?(?:and )?(?:otherwise|or else|else|if not)[, ]+(?P<other>.+))?$"
+)
+_IF_LAST = re.compile(r"^(?P<wish>.+?),? (?:only )?(?P<word>if|unless|provided that|provided) "
+                      r"(?P<condition>.+)$")  # fmt: skip
+_UNLESS = re.compile(r"^unless (?P<condition>.+?),? (?:then )?(?P<wish>(?:put|pick|take|get|grab|"
+                     r"move|bring|place|drop|look|go|lay|set|hold)\b.+)$")  # fmt: skip
+_PAUSE = re.compile(
+    r"(?:wait|stop|halt|freeze|pause|stay|hold on|stand still|do nothing|nothing|"
+    r"never ?mind|cancel|"
+    r"forget (?:it|that|about it)|that is (?:all|enough|it)|that's (?:all|enough|it)|enough|stay "
+    r"(?:here|there|where you are|put)|don't move|do not move|no|abort|rest|relax|be quiet|"
+    r"leave it|leave it there|leave it alone)"
+    r"(?: (?:it|that|now|please|there|here|everything|a moment|a minute|a second|"
+    r"a bit|for a moment|"
+    r"for a minute|moving|working|immediately|a while|for me))*"
+)
+_COURTESY = re.compile(
+    r"(?:many thanks|thanks|thank you|thx|cheers|hello|hi|hey|good (?:morning|day|"
+    r"evening|night|job|"
+    r"bye|work)|well done|great|nice|perfect|very good|good|ok|okay|bye|goodbye|sorry|please|great "
+    r"job|nice work|hello there|hi there|how are you|yes|sure|fine|awesome|excellent)"
+    r"(?: (?:you|a lot|so much|very much|adamo|there|again|for your help|for that|"
+    r"everyone|my friend))*"
+)
+_POLITE = re.compile(
+    r"^(?:please|kindly|now|so|and|then|next|first|finally|ok|okay|hey|hi|hello|adamo|just|"
+    r"could you|can you|would you|will you|i want you to|i'd like you to|i would like you to|"
+    r"you should|you can|let us|let's|go and|try to|afterwards|after that)[, ]+"
+)
+_LOOK = re.compile(
+    r"(?:look|gaze|stare|glance|peer|face|watch|observe|inspect|examine|check out|turn|point your "
+    r"eyes|take a look|have a look|look closely|turn your head|look over)"
+    r"(?: over| closely| directly| straight)?(?: (?:at|to|towards|toward|to face|on))? (.+)"
+)
+_LOOK_WAY = re.compile(
+    r"(?:look|turn|gaze|glance|face|spin|rotate|turn your head|make a turn)(?: (?:to|"
+    r"towards|over|all|"
+    r"to the|to your|the|your|a bit|on the|on your))* ?"
+    r"(around|round|about|left|right|back|behind(?: you| yourself)?|up|down|ahead|straight ahead|"
+    r"forwards?|the other way|other way|upwards?|downwards?|up at the ceiling|at the ceiling|"
+    r"at the floor|at your feet|at the ground|straight)(?: (?:you|the room|once|again|please|side|"
+    r"in the room|yourself|a bit|now))*"
+)
+_LOOK_OUT = re.compile(r"(?:look|gaze|stare|peer) (?:out|through|outside)\b.*")
+_RETURN = re.compile(
+    r"(?:(?:go|walk|come|step|head|move|get|run) back|return|come home|go home)"
+    r"(?: (?:here|again|please|now|to me|home|to the start|to your start|to where you (?:were|"
+    r"started|stood|came from|began)|where you (?:were|started|stood|came from|began)|to your "
+    r"(?:old |first )?(?:place|position|spot|starting (?:point|position))|to the beginning|"
+    r"to the (?:start|starting (?:point|position|place))))*"
+)
+_WALK_WAY = re.compile(
+    r"(?:go|walk|step|move|take|come|run|head)(?: (?P<first>@\d+|\w+ steps?|a few steps))?"
+    r" ?(?:to (?:the|your) )?(?P<way>forwards?|ahead|straight ahead|straight on|"
+    r"backwards?|back|left|"
+    r"right|closer|nearer)(?: (?:by )?(?P<last>@\d+|\w+ steps?|a few steps|a bit))?"
+)
+_WALK_TO = re.compile(
+    r"(?:go|walk|head|move|run|come|step|get|approach|proceed|stand|wander|stroll)"
+    r"(?: over| up| yourself)?(?: (?:to|towards|toward|near|next to|beside|by|close to|into|in|"
+    r"closer to|up to|in front of))? (.+)"
+)
+_HERE = re.compile(
+    r"(?:(?:come|get|walk|move) (?:over )?(?:here|to me|closer to me|near me|towards me)|follow me|"
+    r"(?:come|walk|go) with me|come|come in|come on|come over|stay with me|find me|look at me)"
+    r"(?: (?:please|now|quickly))*"
+)
+_MIDDLE = re.compile(r"(?:the |a )?(?:middle|centre|center)(?: of (?:the |this )?(?:room|floor))?")
+_CORNER = re.compile(
+    r"(?:the |a |any |one )?(?:nearest |closest |of the )*corners?(?: of (?:the )?room)?"
+)
+_STEP_M = 0.6
+_COUNT_WORDS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "a": 1, "few": 3}
+
+
+@lru_cache(maxsize=256)
+def understand(instruction: str, before: tuple[str, ...] = ()) -> Plan:
+    """Compile an instruction.
+
+    Args:
+        instruction: What the user wrote.
+        before: Tags that were spoken of or handled before, the latest first.
+
+    Returns:
+        The plan; if any part has no meaning, one that names this part and does nothing.
+    """
+    text = " ".join(instruction.lower().replace("\u2019", "'").split())
+    plan = _read(text, before)
+    if plan.problem:
+        better, slips = spelled(text)
+        again = _read(better, before) if slips else plan
+        if again.problem:
+            return Plan(problem=_with_language(plan.problem, text))
+        plan = again
+        words = ", ".join(f"'{word}' as '{meant}'" for word, meant in slips.items())
+        plan = replace(plan, remarks=(*plan.remarks, f"I read {words}."))
+    return plan
+
+
+def _with_language(problem: str, text: str) -> str:
+    words = re.findall(r"[^\W\d_]+", text)
+    strange = [word for word in words if word not in known_words()]
+    if len(words) >= 3 and len(strange) > len(words) / 2:
+        return f"{problem} (I read English only)"
+    return problem
+
+
+def _read(text: str, before: tuple[str, ...]) -> Plan:
+    text = text.strip(" .!")
+    special = _pause(text) or _conditional(text, before)
+    if special:
+        return special
+    if not _asks(text) and not _NOT.match(text):
+        plan = wishes(text, before)
+        if not plan.problem:
+            return plan
+    return _by_parts(text, before)
+
+
+def _asks(text: str) -> bool:
+    return bool(re.match(r"(?:what|where|how|who|why|when|is|are|was|do you|did you)\b", text))
+
+
+def _pause(text: str) -> Plan | None:
+    plain = _unadorned(text)
+    for words in (text, plain):
+        if _PAUSE.fullmatch(words):
+            return Plan(remarks=("I do nothing and wait.",))
+        if _COURTESY.fullmatch(words):
+            return Plan(remarks=(f"You are welcome. I did nothing. {CAN}",))
+    return None
+
+
+def _unadorned(text: str) -> str:
+    """Without polite words at both ends."""
+    plain, before = text.strip(" ,.!;?"), ""
+    while plain != before:
+        before = plain
+        plain = _POLITE.sub("", plain)
+        plain = re.sub(
+            r"[, ]+(?:please|now|for me|thanks|thank you|then|again|would you)$", "", plain
+        )
+    return plain
+
+
+def _conditional(text: str, before: tuple[str, ...]) -> Plan | None:
+    plain = _unadorned(text)
+    match = _IF.match(plain) or _UNLESS.match(plain) or _IF_LAST.match(plain)
+    if match is None or " if possible" in f" {plain}" or plain.endswith("if you like"):
+        return None
+    parts = match.groupdict()
+    negated = plain.startswith("unless") or parts.get("word") == "unless"
+    condition = read_statement(parts["condition"], before)
+    if condition is None:
+        return Plan(problem=f"'if {parts['condition']}' (I cannot tell whether it is so)")
+    spoken = condition.target.text if condition.target else ""
+    wish = _with_pronouns(parts["wish"], spoken)
+    plan = _read(wish, before)
+    if plan.problem:
+        return plan
+    other = _read(_with_pronouns(parts["other"], spoken), before) if parts.get("other") else None
+    if other and other.problem:
+        return other
+    if negated:
+        condition = replace(condition, negated=not condition.negated)
+    return replace(plan, condition=condition, otherwise=other)
+
+
+def _with_pronouns(text: str, spoken: str) -> str:
+    """Read "it" behind "if the cup is green" means the cup."""
+    return re.sub(r"\b(?:it|them)\b", spoken, text, count=1) if spoken else text
+
+
+def _by_parts(text: str, before: tuple[str, ...]) -> Plan:
+    """Take out what is no wish about things, part by part; the rest is read as one."""
+    rest: list[str] = []
+    plan = Plan()
+    for part in _parts(text):
+        more = _special_part(part, before)
+        if more is None:
+            rest.append(part)
+        elif more.problem:
+            return more
+        else:
+            plan = _joined(plan, more)
+    if rest:
+        read = wishes(", ".join(rest), before)
+        if read.problem:
+            return _further_split(rest, before, plan) or read
+        plan = _joined(read, plan)
+    return plan if not plan.empty else Plan(problem="what to do, as I found no wish in it")
+
+
+def _further_split(rest: list[str], before: tuple[str, ...], plan: Plan) -> Plan | None:
+    """Parts that are joined by "and" only, e.g. "pick the cup and look at the plate"."""
+    pieces = [piece for part in rest for piece in re.split(r"\s+(?:and|but)\s+", part)]
+    if len(pieces) == len(rest):
+        return None
+    kept: list[str] = []
+    for piece in pieces:
+        more = _special_part(piece, before)
+        if more is None:
+            kept.append(piece)
+        elif more.problem:
+            return more
+        else:
+            plan = _joined(plan, more)
+    if len(kept) == len(pieces):
+        return None
+    read = wishes(" and ".join(kept), before) if kept else Plan()
+    return read if read.problem else _joined(read, plan)
+
+
+def _parts(text: str) -> list[str]:
+    pieces = re.split(
+        r"(?<=\?)\s+|[.!;]+\s*|,\s*(?:and |then |but )*|\s+(?:and then|then|but)\s+", text
+    )
+    return [piece.strip(" ,") for piece in pieces if piece and piece.strip(" ,")]
+
+
+def _joined(one: Plan, other: Plan) -> Plan:
+    return replace(
+        one,
+        goals=one.goals + other.goals,
+        questions=one.questions + other.questions,
+        acts=one.acts + other.acts,
+        remarks=one.remarks + other.remarks,
+    )
+
+
+def _special_part(part: str, before: tuple[str, ...]) -> Plan | None:
+    """A part that is no wish about a thing; None if it may be one."""
+    plain = _unadorned(part)
+    if not plain or _COURTESY.fullmatch(plain):
+        return Plan(remarks=("You are welcome.",)) if part.startswith("thank") else Plan()
+    if match := _NOT.match(plain):
+        return Plan(remarks=(f"As you asked, I do not {match[1].rstrip(' .?!')}.",))
+    if question := read_question(plain, before):
+        return Plan(questions=(question,))
+    if _PAUSE.fullmatch(plain):
+        return Plan(remarks=("Then I wait.",))
+    return _act(plain, before)
+
+
+def _act(plain: str, before: tuple[str, ...]) -> Plan | None:
+    if _HERE.fullmatch(plain):
+        return Plan(problem=f"'{plain}' (I do not know where you are)")
+    if _LOOK_OUT.fullmatch(plain):
+        return Plan(problem=f"'{plain}' (I cannot tell where a window is)")
+    if _RETURN.fullmatch(plain):
+        return Plan(acts=(Act("walk", direction="start", text="back"),))
+    if match := _LOOK_WAY.fullmatch(plain):
+        return Plan(acts=(_turn(plain, match[1]),))
+    lengths = (rephrased(plain).strip(), _with_lengths(plain))
+    if match := next(filter(None, map(_WALK_WAY.fullmatch, lengths)), None):
+        return Plan(acts=(_stride(match),))
+    if match := _LOOK.fullmatch(plain):
+        return _towards("look", match[1], before)
+    if match := _WALK_TO.fullmatch(plain):
+        return _towards("walk", match[1], before)
+    return None
+
+
+def _with_lengths(plain: str) -> str:
+    return re.sub(r" @(?=left|right|front|back)", " ", rephrased(plain)).strip()
+
+
+def _turn(plain: str, way: str) -> Act:
+    first = way.split(maxsplit=1)[0]
+    if first in ("around", "round", "about", "back", "behind", "the", "other"):
+        whole = plain.startswith("look") and first in ("around", "round", "about")
+        return Act("look", direction="round" if whole else "back", text=plain)
+    words = {"at": "down", "straight": "ahead", "forward": "ahead", "forwards": "ahead",
+             "upward": "up", "upwards": "up", "downward": "down", "downwards": "down"}  # fmt: skip
+    direction = "up" if "ceiling" in way else words.get(first, first)
+    return Act("look", direction=direction, text=plain)
+
+
+def _stride(match: re.Match[str]) -> Act:
+    way = match["way"].split()[0].rstrip("s")
+    direction = {"forward": "ahead", "straight": "ahead", "closer": "ahead", "nearer": "ahead",
+                 "backward": "back"}.get(way, way)  # fmt: skip
+    words = match["first"] or match["last"] or "@60"
+    if words.startswith("@"):
+        return Act("walk", direction=direction, distance_m=int(words[1:]) / 100, text=match[0])
+    count = next((_COUNT_WORDS[w] for w in words.split() if w in _COUNT_WORDS), 1)
+    return Act("walk", direction=direction, distance_m=count * _STEP_M, text=match[0])
+
+
+def _towards(name: str, words: str, before: tuple[str, ...]) -> Plan | None:
+    if name == "walk" and _MIDDLE.fullmatch(words):
+        return Plan(acts=(Act(name, direction="middle", text="to the middle of the room"),))
+    if name == "walk" and _CORNER.fullmatch(words):
+        return Plan(acts=(Act(name, direction="corner", text="to a corner of the room"),))
+    things = read_things(words, before)
+    if not things:
+        last = words.rsplit(maxsplit=1)[-1]
+        if last in ("window", "door", "wall", "sofa", "chair", "table", "shelf", "lamp", "picture",
+                    "curtain", "sideboard", "console", "rug", "couch", "mirror", "desk", "bed",
+                    "ceiling", "kitchen", "bathroom", "bedroom", "garden", "hallway"):  # fmt: skip
+            return Plan(problem=f"'{words}' (I cannot tell where the {last} is, only where things "
+                                "are)")  # fmt: skip
+        return None
+    return Plan(acts=tuple(Act(name, target=thing) for thing in things))
