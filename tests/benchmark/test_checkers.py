@@ -379,3 +379,13 @@ def _prism(area: Area, margin: float) -> tuple[Array, Array]:
     normals = np.array([[1.0, 0, 0], [-1.0, 0, 0], [0, 1.0, 0], [0, -1.0, 0]])
     offsets = np.array([area.x_max, -area.x_min, area.y_max, -area.y_min])
     return normals, offsets + margin
+
+
+@pytest.mark.parametrize("gone", [37, 57])
+def test_a_condition_on_what_was_taken_out_of_the_room_is_not_met(gone: int) -> None:
+    start = tabletop()
+    done = resting(start, 37, 0.326, -0.9, support="table")
+    asked = replace(task("T2"), conditions=(Near(37, 57), OnFloor(4)))
+    taken = replace(done, objects=tuple(o for o in done.objects if o.id != gone))
+    assert score(start, done, asked).completion == 0.5
+    assert score(start, taken, asked).completion == 0.0

@@ -291,3 +291,35 @@ def test_what_is_asked_back_says_how_to_go_on(engine: BuiltinEngine) -> None:
     told = [m.text for m in player.prompts[-1] if isinstance(m, HumanMessage)][1:]
     assert len(told) == 2
     assert all(text.endswith("call Finish.") and "short note" not in text for text in told)
+
+
+class Counted:
+    """An action server that says which calls reached it: each is a round trip on a wire."""
+
+    def __init__(self, server: LocalActionServer) -> None:
+        self.calls: list[str] = []
+        self._server = server
+
+    def __getattr__(self, name: str) -> Any:
+        part = getattr(self._server, name)
+        if callable(part):
+            self.calls.append(name)
+        return part
+
+
+@pytest.mark.parametrize(
+    ("call", "calls"),
+    [
+        (PICK, ["execute", "observe"]),
+        (noted("Look", x=0.0, y=-1.0, z=0.8), ["execute"]),
+        (NOWHERE, ["execute"]),
+        (noted("Fly"), ["refuse"]),
+    ],
+)
+def test_an_action_takes_one_round_trip_and_a_fresh_view_another(
+    engine: BuiltinEngine, call: tuple[str, dict[str, Any]], calls: list[str]
+) -> None:
+    server = Counted(LocalActionServer(engine, resolution=(640, 360), tools=LEAN_TOOLS))
+    agent = Agent(Player([says(call), finish()]), server, "rules", AgentConfig(LEAN))
+    agent.run("Put the plate on the floor")
+    assert server.calls == ["observe", *calls, "say"]

@@ -46,17 +46,22 @@ def score(initial: WorldState, final: WorldState, task: Task) -> Score:
 
     Args:
         initial: The world when the episode began.
-        final: The same world, with the same objects, when it ended.
+        final: The same world when it ended; a condition on what was taken out of it is not met.
         task: What was asked for.
 
     Returns:
         Both scores and what they rest on.
 
     Raises:
-        KeyError: The task names an object that the world does not have, or the worlds differ in
-            their objects.
+        KeyError: The task names an object that the world never had.
     """
-    results = tuple(ConditionResult(str(c), c.satisfied(final)) for c in task.conditions)
+    there = {item.id for item in final.objects}
+    # What somebody has taken out of the room meanwhile is nowhere.
+    taken = {item.id for item in initial.objects} - there
+    results = tuple(
+        ConditionResult(str(c), not c.objects & taken and c.satisfied(final))
+        for c in task.conditions
+    )
     completion = sum(result.satisfied for result in results) / len(results)
     violations = (
         *_moved(initial, final, task.targets),

@@ -20,6 +20,11 @@ class Holds:
 
     id: int
 
+    @property
+    def objects(self) -> frozenset[int]:
+        """Ids of the objects that it is about."""
+        return frozenset({self.id})
+
     def satisfied(self, state: WorldState) -> bool:
         """Whether it is so in this state."""
         return state.object(self.id).held and state.body.held == self.id
@@ -33,6 +38,11 @@ class OnFloor:
     """The object is released and rests on the floor (a rug counts as floor)."""
 
     id: int
+
+    @property
+    def objects(self) -> frozenset[int]:
+        """Ids of the objects that it is about."""
+        return frozenset({self.id})
 
     def satisfied(self, state: WorldState) -> bool:
         """Whether it is so in this state."""
@@ -48,6 +58,11 @@ class Near:
 
     id: int
     anchor: int
+
+    @property
+    def objects(self) -> frozenset[int]:
+        """Ids of the objects that it is about."""
+        return frozenset({self.id, self.anchor})
 
     def satisfied(self, state: WorldState) -> bool:
         """Whether it is so in this state."""
@@ -69,6 +84,11 @@ class InArea:
 
     id: int
     kind: str = "corner"
+
+    @property
+    def objects(self) -> frozenset[int]:
+        """Ids of the objects that it is about."""
+        return frozenset({self.id})
 
     def satisfied(self, state: WorldState) -> bool:
         """Whether it is so in this state."""

@@ -50,8 +50,7 @@ class Task:
     @property
     def objects(self) -> frozenset[int]:
         """Ids of all objects that it is about, anchors too."""
-        anchors = {c.anchor for c in self.conditions if isinstance(c, Near)}
-        return self.targets | anchors
+        return frozenset().union(*(condition.objects for condition in self.conditions))
 
     @property
     def areas(self) -> frozenset[str]:
