@@ -35,12 +35,16 @@ class Budget:
         """Refuse what is no amount."""
         for name in ("tokens", "usd", "calls", "seconds"):
             cap = getattr(self, name)
-            if cap is not None and (not math.isfinite(cap) or cap < 0):
+            if cap is not None and not (_is_amount(cap) and cap >= 0):
                 raise ConfigError(f"The budget of {name} must be 0 or more, not {cap}.")
 
     def __bool__(self) -> bool:
         """Whether anything is capped."""
         return self != Budget()
+
+
+def _is_amount(cap: object) -> bool:
+    return isinstance(cap, int | float) and not isinstance(cap, bool) and math.isfinite(cap)
 
 
 @dataclass(frozen=True, slots=True)

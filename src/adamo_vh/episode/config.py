@@ -15,7 +15,7 @@ from adamo_vh.cognition.profile import PAPER, Profile
 from adamo_vh.cognition.profile import profile as find_profile
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import Sampling
-from adamo_vh.perception import Labeling, TextForm
+from adamo_vh.perception import Labeling, Tagger, TextForm
 from adamo_vh.record.termination import Limits
 
 _E = TypeVar("_E", Labeling, TextForm)
@@ -27,7 +27,8 @@ class Settings(TypedDict, total=False):
     task: str | Task | None
     scene: str
     figure: str
-    labeling: str | Labeling
+    labeling: str | Tagger
+    """"sem", "opaq", or an own one, which is handed to the session beside this."""
     tool_calls: str
     profile: str | Profile
     switches: Mapping[str, Any] | None
@@ -132,7 +133,9 @@ class EpisodeConfig:
             task = find_task(task)
         read["added_tools"] = tuple(read.get("added_tools", ()))
         read["profile"] = _profile(read.get("profile", PAPER), read.pop("switches", None))
-        read["labeling"] = _member(Labeling, read.get("labeling", Labeling.SEM), "labeling")
+        labeling = read.pop("labeling", Labeling.SEM)
+        if isinstance(labeling, str):
+            read["labeling"] = _member(Labeling, labeling, "labeling")
         read["text_form"] = _member(TextForm, read.get("text_form", TextForm.FULL), "text form")
         if isinstance(read.get("resolution"), str):
             read["resolution"] = read_resolution(read["resolution"])

@@ -21,12 +21,13 @@ from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import Manifest
 from adamo_vh.errors import ConfigError, RecordError
 from adamo_vh.files import write_whole
-from adamo_vh.perception import PerceptionConfig
+from adamo_vh.perception import PerceptionConfig, Tagger
 from adamo_vh.record.run_folder import SCENE, SCRIPT
 from adamo_vh.record.trajectory import Trajectory
 
 ENGINES, TOOLS = "adamo_vh.engines", "adamo_vh.tools"
 """Entry-point groups under which other packages offer theirs."""
+_DEFAULT_SCENE = "s1"
 
 
 def create_engine(scene: str = "s1", figure: str = "mara") -> World:
@@ -96,6 +97,11 @@ def as_said(config: EpisodeConfig, world: World) -> EpisodeConfig:
     """The settings with scene and figure as an engine that was handed in tells them."""
     scene = world.scene
     name = scene.source if Path(scene.source).is_file() else scene.name
+    if config.scene.lower() not in (name.lower(), scene.name.lower(), _DEFAULT_SCENE):
+        raise ConfigError(
+            f"The engine is of scene {scene.name!r}, and the settings say {config.scene!r}; leave "
+            "the scene out."
+        )
     return replace(config, scene=name, figure=acting_body(world).info.figure)
 
 
@@ -134,14 +140,24 @@ def check_task(config: EpisodeConfig, world: World, own: Task | None) -> None:
         )
 
 
-def check_tools(
-    folder: Path, config: EpisodeConfig, recorded: Trajectory, tools: Sequence[Tool] | None
+def check_handed(
+    folder: Path,
+    manifest: Manifest,
+    recorded: Trajectory,
+    tools: Sequence[Tool] | None,
+    labeling: Tagger | None,
 ) -> None:
     """Make sure that everything that was done can be done again.
 
     Raises:
-        RecordError: A tool is missing; names it.
+        RecordError: A tool or the labeling is missing; names it.
     """
+    config = manifest.config
+    if manifest.labeling and labeling is None:
+        raise RecordError(
+            f"{folder} was recorded with a labeling that was handed in ({manifest.labeling}); "
+            "hand it in again: labeling=..."
+        )
     here = {action_name(tool.action_type) for tool in tools_for(config, tools)}
     done = {act.name for act in recorded.acts if act.feedback.code != Code.UNKNOWN_TOOL}
     if lacking := sorted(done - here):
@@ -170,13 +186,22 @@ def tools_for(config: EpisodeConfig, tools: Sequence[Tool] | None = None) -> Seq
     return (*own, *(cast(Tool, found[name].load()) for name in config.added_tools))
 
 
-def instructions(config: EpisodeConfig, engine: World, server: LocalActionServer) -> str:
+def instructions(
+    config: EpisodeConfig,
+    engine: World,
+    server: LocalActionServer,
+    labeling: Tagger | None = None,
+) -> str:
     """The system prompt of an episode: what its scene, labeling, tools and profile call for."""
-    return system_prompt(engine.scene, config.labeling, server.actions, NEAR_M, config.profile)
+    tagger = labeling or config.labeling
+    return system_prompt(engine.scene, tagger, server.actions, NEAR_M, config.profile)
 
 
 def open_server(
-    config: EpisodeConfig, engine: World, tools: Sequence[Tool] | None = None
+    config: EpisodeConfig,
+    engine: World,
+    tools: Sequence[Tool] | None = None,
+    labeling: Tagger | None = None,
 ) -> LocalActionServer:
     """The action server of an episode.
 
@@ -184,9 +209,10 @@ def open_server(
         config: Labeling, grid, resolution and profile.
         engine: The world, just reset.
         tools: The body's primitives; those of the profile by default.
+        labeling: Makes the tags; that of the settings by default.
     """
     perception = PerceptionConfig(
-        labeling=config.labeling,
+        labeling=labeling or config.labeling,
         grid=config.grid,
         points_below_m=acting_body(engine).info.reach_top_m if config.profile.terse else math.inf,
         points_on_walls=not config.profile.terse,

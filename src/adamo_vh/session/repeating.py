@@ -10,7 +10,12 @@ from adamo_vh.observation import Frame
 from adamo_vh.record.trajectory import Event, Happened, Observer
 
 
-class FromThen:
+def later(observers: Sequence[Observer], known: int) -> Sequence[Observer]:
+    """The observers as hearers of what is new alone."""
+    return [_FromThen(observer, known) for observer in observers] if known else observers
+
+
+class _FromThen:
     """Leaves out the events that an observer has no need to hear again."""
 
     def __init__(self, observer: Observer, known: int) -> None:

@@ -19,10 +19,11 @@ from adamo_vh.episode.replay import ReplayReport, replay
 from adamo_vh.episode.result import EpisodeResult, read_manifest
 from adamo_vh.errors import ConfigError, RecordError
 from adamo_vh.inference.model import Model
+from adamo_vh.perception import Tagger
 from adamo_vh.record.run_folder import RESULT
 from adamo_vh.record.trajectory import Observer, read_trajectory
-from adamo_vh.session.bodies import check_tools, open_server, opened
-from adamo_vh.session.session import Session, read_unfinished
+from adamo_vh.session.bodies import check_handed, open_server, opened
+from adamo_vh.session.session import Parts, Session, read_unfinished
 
 
 def run_episode(
@@ -66,7 +67,7 @@ def run_episode(
         RecordError: `out` already holds an episode, or somebody else writes it.
         FileError: `out` cannot be written.
     """
-    task = settings.get("task")
+    task, labeling = settings.get("task"), settings.get("labeling")
     config = _config(instruction, model, settings)
     with Session.begin(
         config,
@@ -77,6 +78,7 @@ def run_episode(
         tools=tools,
         memory=memory,
         task=task if isinstance(task, Task) else None,
+        labeling=None if isinstance(labeling, str) else labeling,
         guards=guards,
         observers=observers,
     ) as session:
@@ -102,13 +104,7 @@ def resume_episode(
     folder: str | Path,
     *,
     budget: Budget | None = None,
-    engine: World | None = None,
-    model: Model | None = None,
-    tools: Sequence[Tool] | None = None,
-    memory: NewMemory | None = None,
-    task: Task | None = None,
-    guards: Sequence[Guard] = (),
-    observers: Sequence[Observer] = (),
+    **parts: Unpack[Parts],
 ) -> EpisodeResult:
     """Go on with an episode that was interrupted at any moment, or broke.
 
@@ -118,13 +114,8 @@ def resume_episode(
     Args:
         folder: Its run folder.
         budget: Holds from now on, in place of the recorded one.
-        engine: As when it began; made from the record by default.
-        model: Who goes on; by default the model that the manifest names.
-        tools: The body's primitives, as when it began.
-        memory: As when it began.
-        task: What is scored, if it is no built-in task.
-        guards: Further reasons to stop.
-        observers: Are told of every event that is new.
+        **parts: What is handed in, as when it began (see `Parts`); a model, to let another one go
+            on.
 
     Raises:
         RecordError: The folder holds no run, or one that has ended, or a conversation; or somebody
@@ -138,17 +129,7 @@ def resume_episode(
     ended = recorded.ended
     if ended is not None and ended.reason.is_scored and (path / RESULT).exists():
         raise RecordError(f"{path} has ended ({ended.reason}); nothing is left to resume.")
-    with Session.resume(
-        path,
-        budget=budget,
-        engine=engine,
-        model=model,
-        tools=tools,
-        memory=memory,
-        task=task,
-        guards=guards,
-        observers=observers,
-    ) as session:
+    with Session.resume(path, budget=budget, **parts) as session:
         if not session.trajectory.instructions:
             session.say(session.config.instruction)
         return session.result()
@@ -160,6 +141,7 @@ def replay_episode(
     *,
     engine: World | None = None,
     tools: Sequence[Tool] | None = None,
+    labeling: Tagger | None = None,
 ) -> ReplayReport:
     """Execute a recorded episode again without its model and compare every state hash.
 
@@ -168,6 +150,7 @@ def replay_episode(
         start: Begin after this many steps, from the state that was saved there.
         engine: As when it was recorded; made from the record by default.
         tools: The body's primitives, as when it was recorded; those of the profile by default.
+        labeling: As when it was recorded, if it was handed in.
 
     Raises:
         RecordError: The folder holds no readable run, or has no such step, or it needs an engine
@@ -176,7 +159,7 @@ def replay_episode(
     path = Path(folder)
     manifest, recorded = read_manifest(path), read_trajectory(path)
     config = manifest.config
-    check_tools(path, config, recorded, tools)
+    check_handed(path, manifest, recorded, tools, labeling)
     with ExitStack() as stack:
         world = opened(stack, config, engine, (path, manifest))
-        return replay(open_server(config, world, tools), world, recorded, start)
+        return replay(open_server(config, world, tools, labeling), world, recorded, start)

@@ -6,11 +6,11 @@ import platform
 import warnings
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Self
+from typing import Self, TypedDict, Unpack
 
 from adamo_vh.action_server import Tool
 from adamo_vh.benchmark.tasks import Task
@@ -32,6 +32,7 @@ from adamo_vh.episode.result import (
 from adamo_vh.errors import ConfigError, FileError, RecordError
 from adamo_vh.inference.model import Model, ModelKind
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
+from adamo_vh.perception import Tagger
 from adamo_vh.record.run_folder import (
     EVENTS,
     FORMAT,
@@ -51,8 +52,8 @@ from adamo_vh.record.writer import TrajectoryWriter
 from adamo_vh.report.page import try_page
 from adamo_vh.session.bodies import (
     as_said,
+    check_handed,
     check_task,
-    check_tools,
     instructions,
     open_server,
     opened,
@@ -61,22 +62,33 @@ from adamo_vh.session.bodies import (
 )
 from adamo_vh.session.forecasting import check_price, forecast_episodes
 from adamo_vh.session.minds import fitting, opened_model, resumed_model
-from adamo_vh.session.repeating import Again, FromThen
+from adamo_vh.session.repeating import Again, later
 
 _REPORTED = ("adamo-vh", "mujoco", "numpy", "pillow", "opencv-python-headless", "pydantic-ai-slim")
 
 
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """What can be handed in from outside, each in place of what the settings name."""
+class Parts(TypedDict, total=False):
+    """What can be handed in from outside, each in place of what the settings name.
 
-    engine: World | None = None
-    model: Model | None = None
-    tools: Sequence[Tool] | None = None
-    memory: NewMemory | None = None
-    task: Task | None = None
-    guards: Sequence[Guard] = ()
-    observers: Sequence[Observer] = ()
+    A session that is resumed needs the same ones as when it began.
+    """
+
+    engine: World | None
+    """Is reset, and not closed."""
+    model: Model | None
+    """Is not closed."""
+    tools: Sequence[Tool] | None
+    """The body's primitives, in place of those of the profile."""
+    labeling: Tagger | None
+    """Makes and reads the tags."""
+    memory: NewMemory | None
+    """Makes the memory, in place of the short-term memory."""
+    task: Task | None
+    """What is scored."""
+    guards: Sequence[Guard]
+    """Further reasons to stop."""
+    observers: Sequence[Observer]
+    """Are told of every event that is new; a fault of theirs ends nothing."""
 
 
 class Session:
@@ -97,7 +109,6 @@ class Session:
         writer: TrajectoryWriter | None = None,
         folder: Path | None = None,
         known: Sequence[Event] = (),
-        closing: ExitStack | None = None,
     ) -> None:
         """Bring the parts together; use `begin` or `resume`.
 
@@ -109,19 +120,19 @@ class Session:
             writer: Of the record, if one is written.
             folder: Its run folder.
             known: What is on record already and will come again.
-            closing: What is closed with the session.
         """
         self.manifest = manifest
         self.folder = folder
         self.engine = world
         self.model = model
         self._parts, self._writer = parts, writer
-        self._closing = closing or ExitStack()
+        self._closing = ExitStack()
         self._trajectory = Trajectory()
         config = manifest.config
-        server = open_server(config, world, parts.tools)
-        prompt = instructions(config, world, server)
-        memory = parts.memory or ShortTermMemory
+        tagger = parts.get("labeling")
+        server = open_server(config, world, parts.get("tools"), tagger)
+        prompt = instructions(config, world, server, tagger)
+        memory = parts.get("memory") or ShortTermMemory
         self._happening = Again(known, self.apply)
         self._agent = Agent(
             model,
@@ -129,9 +140,9 @@ class Session:
             prompt,
             AgentConfig(config.profile, config.k, config.text_form, config.sampling, config.limits),
             memory=memory(prompt, config.k, config.profile, config.text_form),
-            guards=(BudgetGuard(config.budget), *parts.guards),
+            guards=(BudgetGuard(config.budget), *parts.get("guards", ())),
             records=(*((writer,) if writer else ()), self._trajectory, self._happening),
-            observers=[FromThen(observer, len(known)) for observer in parts.observers],
+            observers=later(parts.get("observers", ()), len(known)),
             known=known,
         )
 
@@ -142,13 +153,7 @@ class Session:
         out: str | Path | None = None,
         *,
         record: bool = False,
-        engine: World | None = None,
-        model: Model | None = None,
-        tools: Sequence[Tool] | None = None,
-        memory: NewMemory | None = None,
-        task: Task | None = None,
-        guards: Sequence[Guard] = (),
-        observers: Sequence[Observer] = (),
+        **parts: Unpack[Parts],
     ) -> Self:
         """Begin; nothing is said yet.
 
@@ -156,13 +161,7 @@ class Session:
             config: Scene, model, profile, limits: everything that can be written down.
             out: A new run folder for manifest, events, frames, result and page; none without.
             record: Also keep every request and reply of the model there, as a cassette.
-            engine: In place of the scene's; is reset, and not closed.
-            model: In place of the one that the URI names; is not closed.
-            tools: The body's primitives; those of the profile by default.
-            memory: Makes the memory; the short-term memory by default.
-            task: What is scored, if it is no built-in task.
-            guards: Further reasons to stop.
-            observers: Are told of every event.
+            **parts: What is handed in; see `Parts`.
 
         Raises:
             ConfigError: A setting is wrong; nothing was started.
@@ -172,7 +171,7 @@ class Session:
         """
         if record and out is None:
             raise ConfigError("A recording needs a run folder: give out as well.")
-        parts = Parts(engine, model, tools, memory, task, guards, observers)
+        engine, model, tools = parts.get("engine"), parts.get("model"), parts.get("tools")
         with ExitStack() as stack:
             mind = opened_model(stack, config, model)
             if model is None:
@@ -185,8 +184,8 @@ class Session:
             world = opened(stack, config, engine)
             if engine is not None:
                 config = as_said(config, world)
-            check_task(config, world, task)
-            manifest = describe(config, mind, world, own_engine(world) if engine else "")
+            check_task(config, world, parts.get("task"))
+            manifest = describe(config, mind, world, parts)
             writer, folder = None, None if out is None else Path(out)
             if folder is not None:
                 lock = stack.enter_context(FolderLock(folder))
@@ -197,9 +196,9 @@ class Session:
                 stack.callback(writer.close)
                 if record:
                     mind = taped(mind, folder / FOLDER)
-            return cls(
-                manifest, world, mind, parts, writer=writer, folder=folder, closing=stack.pop_all()
-            )
+            session = cls(manifest, world, mind, parts, writer=writer, folder=folder)
+            session._closing.enter_context(stack.pop_all())
+        return session
 
     @classmethod
     def resume(
@@ -207,13 +206,7 @@ class Session:
         folder: str | Path,
         *,
         budget: Budget | None = None,
-        engine: World | None = None,
-        model: Model | None = None,
-        tools: Sequence[Tool] | None = None,
-        memory: NewMemory | None = None,
-        task: Task | None = None,
-        guards: Sequence[Guard] = (),
-        observers: Sequence[Observer] = (),
+        **parts: Unpack[Parts],
     ) -> Self:
         """Go on in a run folder, in the state in which it was left.
 
@@ -224,20 +217,13 @@ class Session:
         Args:
             folder: A run folder.
             budget: Holds from now on, in place of the recorded one.
-            engine: As when it began; made from the record by default.
-            model: Who goes on; by default the model that the manifest names.
-            tools: As when it began.
-            memory: As when it began.
-            task: As when it began.
-            guards: Further reasons to stop.
-            observers: Are told of every event that is new.
+            **parts: What is handed in, as when it began; a model, to let another one go on.
 
         Raises:
             RecordError: The folder holds no run, or one of an older version, or somebody else
                 writes it, or it came out otherwise. The record is as it was.
         """
         path = Path(folder)
-        parts = Parts(engine, model, tools, memory, task, guards, observers)
         read_manifest(path)
         with ExitStack() as stack:
             lock = stack.enter_context(FolderLock(path))
@@ -247,27 +233,19 @@ class Session:
                     f"{path} was written by an older version of ADAMO: it can be shown and "
                     "replayed, and not be continued. Run it again."
                 )
-            check_tools(path, manifest.config, recorded, tools)
+            check_handed(path, manifest, recorded, parts.get("tools"), parts.get("labeling"))
             known = recorded.events
             if (ended := recorded.ended) is not None and not ended.reason.is_scored:
                 known = known[:-1]  # It broke: let it go on from there.
-            mind = resumed_model(stack, path, manifest.config, recorded, model)
+            mind = resumed_model(stack, path, manifest.config, recorded, parts.get("model"))
             if budget:
                 manifest = replace(manifest, config=replace(manifest.config, budget=budget))
                 check_price(manifest.config.model, mind, budget)
-            world = opened(stack, manifest.config, engine, (path, manifest))
+            world = opened(stack, manifest.config, parts.get("engine"), (path, manifest))
             writer = TrajectoryWriter(path, known=known, lock=lock)
             stack.callback(writer.close)
-            session = cls(
-                manifest,
-                world,
-                mind,
-                parts,
-                writer=writer,
-                folder=path,
-                known=known,
-                closing=stack.pop_all(),
-            )
+            session = cls(manifest, world, mind, parts, writer=writer, folder=path, known=known)
+            session._closing.enter_context(stack.pop_all())
         try:
             session._happening.catch_up()
             for instruction in recorded.instructions:
@@ -292,7 +270,7 @@ class Session:
     def forecast(self) -> Forecast | None:
         """What an episode will take, if a provider is to be asked."""
         is_asked = self.manifest.model_kind is ModelKind.VLM
-        if not is_asked or isinstance(self._parts.model, Cassette):
+        if not is_asked or isinstance(self.model, Cassette):
             return None
         return forecast_episodes(self.config, self.engine)
 
@@ -330,7 +308,7 @@ class Session:
             RecordError: The last instruction has not ended.
         """
         final = _last_state(self.engine, self.manifest)
-        task = self._parts.task
+        task = self._parts.get("task")
         result = summarise(self.manifest, self._trajectory, final, self.folder, task)
         if self.folder is not None:
             try:
@@ -355,13 +333,21 @@ class Session:
         self.close()
 
 
-def describe(config: EpisodeConfig, model: Model, world: World, engine: str = "") -> Manifest:
+def describe(config: EpisodeConfig, model: Model, world: World, parts: Parts) -> Manifest:
     """The manifest of an episode that is about to begin."""
     versions = {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}}
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    who = model.info
+    who, tagger = model.info, parts.get("labeling")
     return Manifest(
-        config, who.name, who.kind, versions, now, world.state(), who.capabilities, engine
+        config,
+        who.name,
+        who.kind,
+        versions,
+        now,
+        world.state(),
+        who.capabilities,
+        engine=own_engine(world) if parts.get("engine") else "",
+        labeling="" if tagger is None else type(tagger).__name__,
     )
 
 
