@@ -62,7 +62,9 @@ def client(served: ServedModel) -> openai.OpenAI:
 
 def post(served: ServedModel, body: Any) -> httpx.Response:
     content = body if isinstance(body, bytes) else json.dumps(body).encode()
-    return httpx.post(f"{served.base_url}/chat/completions", content=content, timeout=10)
+    headers = {"content-type": "application/json"}
+    url = f"{served.base_url}/chat/completions"
+    return httpx.post(url, content=content, headers=headers, timeout=10)
 
 
 def test_the_openai_client_gets_a_note_and_a_call(served: ServedModel) -> None:
@@ -302,3 +304,34 @@ def test_it_stops_with_its_block_and_frees_the_port() -> None:
         assert httpx.get(f"{served.base_url}/models").status_code == 200
     with pytest.raises(httpx.ConnectError):
         httpx.get(f"{served.base_url}/models")
+
+
+def test_a_foreign_page_cannot_drive_a_model(served: ServedModel) -> None:
+    body = json.dumps({"model": "m", "messages": [user("Hello")]})
+    url = f"{served.base_url}/chat/completions"
+    foreign = {"origin": "https://evil.example", "content-type": "text/plain"}
+    answer = httpx.post(url, content=body, headers=foreign, timeout=10)
+    assert answer.status_code == 403 and "evil.example" in answer.json()["error"]["message"]
+    plain = httpx.post(url, content=body, headers={"content-type": "text/plain"}, timeout=10)
+    assert plain.status_code == 415
+
+
+def test_a_limit_of_tokens_cuts_the_answer_off(served: ServedModel) -> None:
+    asked: Json = {"model": "m", "messages": [user("Pick up the key")], "tools": [LOOK]}
+    whole = post(served, asked).json()["choices"][0]
+    for name in ("max_tokens", "max_completion_tokens"):
+        cut = post(served, {**asked, name: 5}).json()
+        choice = cut["choices"][0]
+        assert choice["finish_reason"] == "length"
+        assert "tool_calls" not in choice["message"]
+        assert whole["message"]["content"].startswith(choice["message"]["content"])
+        assert 0 < cut["usage"]["completion_tokens"] <= 5
+    assert post(served, {**asked, "max_tokens": 4000}).json()["choices"][0] == whole
+
+
+@pytest.mark.parametrize("fields", [{"stream": 1}, {"stream": "true"}, {"stream": []}])
+def test_a_flag_is_true_or_false(served: ServedModel, fields: Json) -> None:
+    answer = post(served, {"model": "m", "messages": [user("Hello")], **fields})
+    assert answer.status_code == 400 and answer.json()["error"]["param"] == "stream"
+    options = {"stream": True, "stream_options": {"include_usage": 1}}
+    assert post(served, {"model": "m", "messages": [user("Hi")], **options}).status_code == 400

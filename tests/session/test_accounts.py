@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.fake_provider import FakeProvider, call, completion
+from tests.fake_provider import Canned, FakeProvider, Json, call, completion, fault
 
 import adamo_vh
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
@@ -14,6 +14,7 @@ from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import read_manifest, read_result
 from adamo_vh.errors import CassetteError, ConfigError
 from adamo_vh.inference.cost.tokens import OPENAI_TILES, estimate_image, metered
+from adamo_vh.inference.model import ModelInfo, ModelKind
 from adamo_vh.inference.registry import create_model
 from adamo_vh.inference.remote.provider import ProviderModel
 from adamo_vh.record.termination import TerminationReason
@@ -194,3 +195,71 @@ def test_the_profile_is_on_record(engine: BuiltinEngine, tmp_path: Path) -> None
     result = read_result(tmp_path)
     assert result is not None
     assert result.profile == "lean (plan=1)"
+
+
+def test_what_a_lost_answer_took_is_counted_although_the_episode_broke(
+    engine: BuiltinEngine, tmp_path: Path
+) -> None:
+    """The first answer is no step and cost tokens; the server refuses the repair turn."""
+    unreadable = completion('{"thought": broken')
+    too_long = fault(400, "request (60000 tokens) exceeds the available context size")
+    with FakeProvider([unreadable, too_long]) as server:
+        result = adamo_vh.run_episode(
+            task="T1",
+            model=server.uri(),
+            tool_calls="schema",
+            engine=engine,
+            resolution=SMALL,
+            out=tmp_path / "run",
+        )
+    assert result.termination is TerminationReason.BROKEN and result.completion is None
+    assert (result.requests, result.tokens, result.model_calls) == (2, 1234, 0)
+    read = read_result(tmp_path / "run")
+    assert read is not None and (read.requests, read.tokens) == (2, 1234)
+
+
+def test_a_server_that_counts_nothing_is_stopped_by_an_estimate(
+    engine: BuiltinEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    prices = tmp_path / "prices.toml"
+    prices.write_text(PRICED)
+    monkeypatch.setenv("ADAMO_VH_PRICES", str(prices))
+
+    def uncounted(request: Json) -> Canned:
+        turn = sum(message["role"] == "assistant" for message in request["messages"])
+        answer = completion("On.", [call("Look", {"x": 0.1 * turn, "y": 1, "z": 1}, f"c{turn}")])
+        assert isinstance(answer.body, dict)
+        return Canned({name: value for name, value in answer.body.items() if name != "usage"})
+
+    for budget in (Budget(tokens=5000), Budget(usd=0.02)):
+        with FakeProvider(uncounted) as server:
+            result = adamo_vh.run_episode(
+                task="T4",
+                model=server.uri(),
+                tool_calls="native",
+                engine=engine,
+                resolution=SMALL,
+                budget=budget,
+            )
+        assert result.termination is TerminationReason.BUDGET
+        assert result.usage.estimated and result.tokens > 1000
+        assert result.cost_usd is not None and result.cost_usd > 0.001
+
+
+def test_an_own_model_that_gives_nothing_breaks_the_episode_by_its_name(
+    engine: BuiltinEngine,
+) -> None:
+    class Nothing:
+        info = ModelInfo("nothing", ModelKind.VLM)
+
+        def complete(self, messages: object, tools: object, sampling: object) -> None:
+            return None
+
+    result = adamo_vh.run_episode(
+        task="T4",
+        model=Nothing(),  # type: ignore[arg-type]
+        engine=engine,
+        resolution=SMALL,
+    )
+    assert result.termination is TerminationReason.BROKEN and result.completion is None
+    assert "The model Nothing gave None" in result.answer

@@ -131,7 +131,9 @@ def test_a_probe_finds_out_what_the_endpoint_can_do(
 
 
 def request(messages: list[Message], schema: Any = None) -> ChatRequest:
-    return ChatRequest("m", tuple(messages), (), Sampling(), schema, False, False, frozenset())
+    return ChatRequest(
+        "m", tuple(messages), (), Sampling(), schema, None, False, False, frozenset()
+    )
 
 
 @pytest.mark.parametrize("form", [JsonForm(), ReactForm()])

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from adamo_vh.cli.exits import listed
+from adamo_vh.inference.uris import HELP
 
 app = typer.Typer(
     help="Give a vision-language model a body in a 3D room, and measure why it succeeds or fails.",
@@ -28,13 +29,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text."
 Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]
 Figure = Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")]
 Labeling = Annotated[str, typer.Option(help="sem or opaq.")]
-Model = Annotated[
-    str,
-    typer.Option(
-        help="baseline, random, scripted:FILE.json, replay:RUN_DIR, cassette:RUN_DIR, "
-        "openai:NAME, openai:NAME@URL, anthropic:NAME, google:NAME, ..."
-    ),
-]
+Model = Annotated[str, typer.Option(help=HELP)]
 ToolCalls = Annotated[
     str, typer.Option(help="How a remote model gives its calls: auto, native, schema or react.")
 ]

@@ -202,6 +202,7 @@ def _accounts(result: EpisodeResult) -> str:
         parts.append(
             f"{usage.input_tokens} tokens in ({usage.cached_tokens} cached), "
             f"{usage.output_tokens} out ({usage.reasoning_tokens} reasoning)"
+            + (", estimated in part: the server did not count them" if usage.estimated else "")
         )
         cost = result.cost_usd
         parts.append("price unknown" if cost is None else f"{cost:.4f} USD")
@@ -232,6 +233,8 @@ def _print_result(result: EpisodeResult, folder: Path) -> None:
     if result.why:
         line("stopped", result.why)
     line("model", _accounts(result))
+    for warning in result.warnings:
+        line("warning", warning)
     line("time", f"model {result.model_s:.1f} s, world {result.world_s:.1f} s")
     line("walked", f"{result.walked_m:.1f} m, {result.direct_m:.1f} m in straight lines")
     line("page", str(folder / "episode.html"))

@@ -19,6 +19,7 @@ from adamo_vh.cognition.stops import Errand, Stops
 from adamo_vh.cognition.telling import Telling, fault
 from adamo_vh.cognition.turns import offered, read_turn
 from adamo_vh.engine import WorldEvent
+from adamo_vh.errors import ModelError
 from adamo_vh.inference.messages import AIMessage
 from adamo_vh.inference.model import Model, Sampling
 from adamo_vh.inference.tidy import tidied
@@ -112,7 +113,8 @@ class Agent:
         try:
             return self._end(self._pursue(instruction))
         except Exception as error:
-            return self._end(Stop(TerminationReason.BROKEN, answer=fault(error)))
+            spent = error.spent if isinstance(error, ModelError) else None
+            return self._end(Stop(TerminationReason.BROKEN, answer=fault(error), spent=spent))
 
     def _pursue(self, instruction: str) -> Stop:
         """Perceive, reason and act until there is a reason to stop."""
@@ -285,6 +287,7 @@ class Agent:
             self._state_hash,
             errand.watch.seconds,
             stop.why,
+            stop.spent,
         )
         try:
             self._tell(ended)

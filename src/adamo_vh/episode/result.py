@@ -20,13 +20,13 @@ from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import FileError, RecordError
 from adamo_vh.files import read_text, write_whole
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.model import ModelKind, Usage
+from adamo_vh.inference.model import ModelKind, Reply, Spent, Usage
 from adamo_vh.inference.remote.capabilities import Capabilities
 from adamo_vh.perception import Labeling
 from adamo_vh.record.old_format import OLD_FORMAT, upgraded_result
 from adamo_vh.record.run_folder import FORMAT, MANIFEST, RESULT, check_begun, read_head
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.trajectory import Thought, Trajectory
+from adamo_vh.record.trajectory import Ended, Trajectory
 
 _MOST_BYTES = 50_000_000
 _T = TypeVar("_T")
@@ -110,6 +110,8 @@ class EpisodeResult:
     """The run folder."""
     state_hash: str
     final: WorldState
+    warnings: tuple[str, ...] = ()
+    """What people should know of the replies; see `Reply.warning`."""
 
     @property
     def completion(self) -> float | None:
@@ -186,6 +188,9 @@ def summarise(
         scored = score(manifest.initial, final, task or find_task(config.task))
     thoughts = trajectory.thoughts
     replies = [thought.reply for thought in thoughts]
+    ends = [event for event in trajectory.events if isinstance(event, Ended)]
+    lost = [end.spent for end in ends if end.spent is not None]
+    answers: list[Reply | Spent] = [*replies, *lost]
     kinds = Counter(act.name for act in trajectory.acts)
     stops = [manifest.initial.body.position, *(act.agent.position for act in trajectory.acts)]
     return EpisodeResult(
@@ -206,9 +211,10 @@ def summarise(
         calls=dict(sorted(kinds.items())),
         missing_notes=sum(bool(t.turn.wishes) and not t.turn.note for t in thoughts),
         unreadable=sum(reply.ending.is_failure for reply in replies),
-        requests=sum(reply.requests for reply in replies),
-        usage=sum((reply.usage for reply in replies), Usage()),
-        cost_usd=total_cost(thoughts),
+        requests=sum(took.requests for took in answers),
+        usage=sum((took.usage for took in answers), Usage()),
+        cost_usd=total_cost(answers),
+        warnings=tuple(dict.fromkeys(reply.warning for reply in replies if reply.warning)),
         rungs=tuple(sorted({str(reply.rung) for reply in replies if reply.rung is not None})),
         model_s=sum(reply.seconds for reply in replies),
         world_s=sum(act.world_s for act in trajectory.acts),
@@ -220,11 +226,15 @@ def summarise(
     )
 
 
-def total_cost(thoughts: Sequence[Thought]) -> float | None:
-    """What all answers cost; None if any price is unknown, because that is not 0."""
-    costs = [thought.reply.cost_usd for thought in thoughts]
+def total_cost(answers: Sequence[Reply | Spent]) -> float | None:
+    """What all answers cost; None if any price is unknown, because that is not 0.
+
+    Args:
+        answers: The answers, and those that never came.
+    """
+    costs = [answer.cost_usd for answer in answers]
     known = [cost for cost in costs if cost is not None]
-    return sum(known) if known and len(known) == len(thoughts) else None
+    return sum(known) if known and len(known) == len(costs) else None
 
 
 def to_json(record: Manifest | EpisodeResult) -> Any:

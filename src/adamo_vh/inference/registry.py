@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from adamo_vh.errors import ModelConfigError, ModelError
+from adamo_vh.errors import AdamoError, ModelConfigError, ModelError
 from adamo_vh.inference.model import Model, Rung
 from adamo_vh.inference.redaction import public
 from adamo_vh.inference.remote.retry import RetryPolicy
+from adamo_vh.inference.uris import known_forms
 
 if TYPE_CHECKING:
     from adamo_vh.inference.remote.capabilities import Capabilities
-
-KNOWN = (
-    "baseline, baseline:ocr, random, random:SEED, scripted:FILE.json, replay:RUN_DIR, "
-    "cassette:RUN_DIR, openai:NAME, openai:NAME@http://HOST:PORT/v1 (any OpenAI-compatible "
-    "server), openai-responses:NAME, anthropic:NAME, google:NAME, or PROVIDER:NAME with another "
-    "provider of pydantic-ai, e.g. openrouter:NAME, ollama:NAME, mistral:NAME"
-)
 
 AUTO = "auto"
 _RUNGS = {"native": Rung.NATIVE, "schema": Rung.SCHEMA, "react": Rung.REACT}
@@ -79,7 +73,7 @@ def check_remote_uri(uri: str) -> None:
     """
     prefix, _, rest = uri.partition(":")
     if not rest or not (prefix == "openai" or _is_known_provider(prefix)):
-        raise ModelConfigError(f"Unknown model {public(uri)!r}. Known: {KNOWN}.")
+        raise ModelConfigError(f"Unknown model {public(uri)!r}. Known: {known_forms()}.")
 
 
 def create_local_model(uri: str, *, seed: int = 0) -> Model | None:
@@ -106,7 +100,27 @@ def create_local_model(uri: str, *, seed: int = 0) -> Model | None:
         from adamo_vh.inference.players.cassette import Cassette
 
         return Cassette(rest)
-    return None
+    return _plugin_model(prefix, rest, seed)
+
+
+def _plugin_model(name: str, rest: str, seed: int) -> Model | None:
+    """The model of another installed package; None if none has this name."""
+    from adamo_vh.inference.players.checked import checked
+    from adamo_vh.plugins import MODELS, load_plugin
+
+    make = load_plugin(MODELS, name) if name else None
+    if make is None:
+        return None
+    try:
+        model = make(rest, seed)
+    except AdamoError:
+        raise
+    except Exception as error:
+        raise ModelConfigError(
+            f"The model {name} of an installed package cannot be made: {type(error).__name__}: "
+            f"{error}. It is called with the text behind the colon and the seed."
+        ) from error
+    return checked(model)
 
 
 def _seed(uri: str, text: str) -> int:

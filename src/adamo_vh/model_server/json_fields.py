@@ -74,6 +74,15 @@ def choice_of(entry: Mapping[str, Any], name: str, known: Sequence[str], where: 
     return value
 
 
+def flag(entry: Mapping[str, Any], name: str, where: str = "") -> bool:
+    """True or false; false if it is left out."""
+    value = entry.get(name)
+    if value is not None and not isinstance(value, bool):
+        place = f"{where}.{name}" if where else name
+        raise BadRequest(place, f"it must be true or false, not {_kind(value)}.")
+    return value is True
+
+
 def number(
     entry: Mapping[str, Any], name: str, least: float = -math.inf, most: float = math.inf
 ) -> float | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -14,13 +13,10 @@ from adamo_vh.inference.model import Model
 from adamo_vh.inference.registry import create_local_model
 from adamo_vh.model_server.fault_rules import Faults, load_faults
 from adamo_vh.serving.loopback import listen
+from adamo_vh.serving.running import running
 
 if TYPE_CHECKING:
-    import socket
-
-    from adamo_vh.model_server.openai_endpoint import Served, Service
-
-_START_S = 20.0
+    from adamo_vh.model_server.openai_endpoint import Served
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +65,8 @@ def serve_model(
         ModelConfigError: The model is unknown.
     """
     try:
-        from adamo_vh.model_server.openai_endpoint import MAX_BODY_BYTES, Service
+        from adamo_vh.model_server.broken_connections import CuttableProtocol
+        from adamo_vh.model_server.openai_endpoint import MAX_BODY_BYTES, Service, create_app
     except ImportError as error:
         raise ConfigError(
             f"Serving a model needs an extra package ({error.name}): pip install 'adamo-vh[serve]'."
@@ -78,13 +75,11 @@ def serve_model(
     limit = MAX_BODY_BYTES if max_body_bytes is None else max_body_bytes
     with listen(host, port) as opened:
         player = _local_model(model) if isinstance(model, str) else model
-        stop = _start(Service(player, tools, rules, limit, watch), opened)
-        try:
+        app = create_app(Service(player, tools, rules, limit, watch))
+        with running(app, opened, "adamo-vh-serve-model", CuttableProtocol):
             shown = f"[{host}]" if ":" in host else host
             bound = opened.getsockname()[1]
             yield ServedModel(player.info.name, f"http://{shown}:{bound}/v1")
-        finally:
-            stop()
 
 
 def _local_model(uri: str) -> Model:
@@ -94,36 +89,3 @@ def _local_model(uri: str) -> Model:
             f"{uri!r} is no local model; use baseline, random, scripted:FILE.json or cassette:DIR."
         )
     return model
-
-
-def _start(service: Service, opened: socket.socket) -> Callable[[], None]:
-    """Start the server in a thread; returns what stops it and waits for its end."""
-    import uvicorn
-
-    from adamo_vh.model_server.broken_connections import CuttableProtocol
-    from adamo_vh.model_server.openai_endpoint import create_app
-
-    # Its log is left alone: what happened is told to those who watch.
-    config = uvicorn.Config(
-        create_app(service),
-        http=CuttableProtocol,
-        ws="none",
-        loop="asyncio",
-        lifespan="off",
-        log_config=None,
-        log_level="critical",
-        access_log=False,
-        timeout_graceful_shutdown=1,
-    )
-    server = uvicorn.Server(config)
-    thread = threading.Thread(
-        target=server.run, args=([opened],), name="adamo-vh-serve-model", daemon=True
-    )
-    # The socket listens already: whoever connects before the server runs waits for it.
-    thread.start()
-
-    def stop() -> None:
-        server.should_exit = True
-        thread.join(_START_S)
-
-    return stop

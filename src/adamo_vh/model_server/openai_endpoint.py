@@ -7,9 +7,8 @@ import json
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, field
 from typing import Any
-from urllib.parse import urlsplit
 
-from fastapi import Depends, FastAPI, Request, Response
+from fastapi import FastAPI, Request, Response
 from fastapi.responses import JSONResponse, StreamingResponse
 from starlette.exceptions import HTTPException
 
@@ -29,15 +28,13 @@ from adamo_vh.model_server.openai_replies import (
     completion_events,
     error_body,
     estimated_usage,
+    fitted,
 )
 from adamo_vh.model_server.probe_answers import answer_to_probe
-from adamo_vh.serving.loopback import is_loopback
+from adamo_vh.serving.edge import Edge, Rules
 
 MAX_BODY_BYTES = 64 * 1024 * 1024
 """A larger request is answered with status 413."""
-
-_READ_AT_MOST = 8
-"""So many times the limit is read of a body that is too large, for the client to hear of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,17 +61,13 @@ class Service:
     """Is told of every request."""
 
 
-def create_app(service: Service) -> FastAPI:
-    """Make the web application.
+def create_app(service: Service) -> Edge:
+    """Make the web application, behind its edge.
 
     Args:
         service: What is served.
     """
-    app = FastAPI(
-        title=f"ADAMO serves {service.model.info.name}",
-        openapi_url=None,
-        dependencies=[Depends(_only_from_here)],
-    )
+    app = FastAPI(title=f"ADAMO serves {service.model.info.name}", openapi_url=None)
     endpoint = _Endpoint(service)
 
     @app.exception_handler(HTTPException)
@@ -103,18 +96,8 @@ def create_app(service: Service) -> FastAPI:
         known = service.model.info
         return {"status": "ok", "model": known.name, "kind": known.kind, "tools": service.tools}
 
-    return app
-
-
-def _only_from_here(request: Request) -> None:
-    """Refuse a page on the web that points a name of its own at this address."""
-    named = request.headers.get("host", "")
-    try:
-        here = is_loopback(urlsplit(f"//{named}").hostname or "")
-    except ValueError:
-        here = False
-    if not here:
-        raise HTTPException(403, f"{named!r} is not served here; use 127.0.0.1 or localhost.")
+    rules = Rules(service.max_body_bytes, too_large="send fewer or smaller pictures.")
+    return Edge(app, rules)
 
 
 class _Endpoint:
@@ -129,7 +112,7 @@ class _Endpoint:
         self._requests += 1
         number = self._requests
         try:
-            asked = read_request(await self._body(request))
+            asked = read_request(_json_of(await request.body()))
             rule = self._service.faults.meeting(number, asked.parameters)
             if rule is not None and (broken := _instead(rule, asked)) is not None:
                 self._tell(number, getattr(broken, "status_code", 0), f"fault: {rule.what}")
@@ -137,8 +120,6 @@ class _Endpoint:
             if rule is not None and rule.what is What.SLOW:
                 await asyncio.sleep(rule.seconds or 0.0)
             answer = await self._answer(number, asked, rule)
-        except _TooLarge as error:
-            return self._failed(number, 413, error_body(str(error), "invalid_request_error"))
         except BadRequest as error:
             body = error_body(str(error), "invalid_request_error", error.field)
             return self._failed(number, 400, body)
@@ -153,23 +134,6 @@ class _Endpoint:
         self._tell(number, 200, _words(answer.message, rule))
         return _sent(answer, asked)
 
-    async def _body(self, request: Request) -> Any:
-        limit, read, size = self._service.max_body_bytes, bytearray(), 0
-        async for chunk in request.stream():
-            size += len(chunk)
-            if size <= limit:
-                read += chunk
-            elif size > _READ_AT_MOST * limit:
-                break
-        if size > limit:
-            raise _TooLarge(
-                f"The request has more than {limit} bytes; send fewer or smaller pictures."
-            )
-        try:
-            return json.loads(read)
-        except (ValueError, RecursionError) as error:
-            raise BadRequest("body", f"it is not valid JSON: {error}.") from None
-
     async def _answer(self, number: int, asked: ChatRequest, rule: Rule | None) -> Answer:
         service = self._service
         given = toolless.conversation(asked, service.tools, service.faults.without_tools)
@@ -178,8 +142,9 @@ class _Endpoint:
         message = said if rule is None else spoiled(said, rule)
         if rule is None or not is_as_it_is(said, rule):
             message = toolless.written(message, given.form)
+        message, is_cut = fitted(message, asked.most_tokens)
         usage = estimated_usage(service.model.info.name, asked.messages, asked.tools, message)
-        return Answer(number, asked.model, message, usage)
+        return Answer(number, asked.model, message, usage, is_cut)
 
     async def _asked(self, asked: ChatRequest, given: toolless.Conversation) -> AIMessage:
         async with self._turn:
@@ -197,8 +162,11 @@ class _Endpoint:
             self._service.watch(Served(number, status, text))
 
 
-class _TooLarge(Exception):  # noqa: N818 - a status, answered at once
-    """The body of a request is too large."""
+def _json_of(body: bytes) -> Any:
+    try:
+        return json.loads(body)
+    except (ValueError, RecursionError) as error:
+        raise BadRequest("body", f"it is not valid JSON: {error}.") from None
 
 
 def _instead(rule: Rule, asked: ChatRequest) -> Response | None:

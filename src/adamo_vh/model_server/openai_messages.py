@@ -29,6 +29,7 @@ from adamo_vh.model_server.json_fields import (
     BadRequest,
     child,
     choice_of,
+    flag,
     items,
     mapping,
     number,
@@ -52,6 +53,8 @@ class ChatRequest:
     sampling: Sampling
     schema: Mapping[str, Any] | None
     """JSON schema that the reply must follow."""
+    most_tokens: int | None
+    """Limit on the tokens of the reply; None if the request sets none."""
     stream: bool
     stream_usage: bool
     """Whether the stream ends with the token counts."""
@@ -79,8 +82,9 @@ def read_request(body: Any) -> ChatRequest:
         _tools(body),
         _sampling(body),
         schema,
-        body.get("stream") is True,
-        streams.get("include_usage") is True,
+        _limit(body),
+        flag(body, "stream"),
+        flag(streams, "include_usage", "stream_options"),
         frozenset(names),
     )
 
@@ -238,13 +242,16 @@ def _sampling(body: Mapping[str, Any]) -> Sampling:
     usual = Sampling()
     temperature = number(body, "temperature", 0, 2)
     top_p = number(body, "top_p", 0, 1)
-    limits = [number(body, name, 1) for name in ("max_completion_tokens", "max_tokens")]
-    limit = next((value for value in limits if value is not None), usual.max_tokens)
     return Sampling(
         usual.temperature if temperature is None else temperature,
         usual.top_p if top_p is None else top_p,
-        int(limit),
+        _limit(body) or usual.max_tokens,
     )
+
+
+def _limit(body: Mapping[str, Any]) -> int | None:
+    limits = [number(body, name, 1) for name in ("max_completion_tokens", "max_tokens")]
+    return next((int(value) for value in limits if value is not None), None)
 
 
 def _schema(body: Mapping[str, Any]) -> Mapping[str, Any] | None:

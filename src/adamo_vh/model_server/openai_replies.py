@@ -26,6 +26,8 @@ class Answer:
     """The model's name as the client wrote it."""
     message: AIMessage
     usage: Usage
+    is_cut: bool = False
+    """Whether it was cut off at the limit of tokens."""
 
 
 def error_body(message: str, kind: str, param: str | None = None, code: str | None = None) -> Json:
@@ -73,6 +75,27 @@ def completion_events(answer: Answer, with_usage: bool) -> Iterator[str]:
     yield "data: [DONE]\n\n"
 
 
+def fitted(message: AIMessage, most_tokens: int | None) -> tuple[AIMessage, bool]:
+    """An answer cut off at a limit of tokens, and whether it was.
+
+    Args:
+        message: The whole answer.
+        most_tokens: The limit; None for none.
+    """
+    from adamo_vh.inference.cost.tokens import estimate_reply
+
+    if most_tokens is None or estimate_reply(message) <= most_tokens:
+        return message, False
+    text = message.text
+    low, high = 0, len(text)
+    while low < high:
+        middle = (low + high + 1) // 2
+        fits = estimate_reply(AIMessage(text[:middle])) <= most_tokens
+        low, high = (middle, high) if fits else (low, middle - 1)
+    # Calls come behind the text: one that is cut through is none.
+    return AIMessage(text[:low]), True
+
+
 def estimated_usage(
     uri: str, messages: Sequence[Message], tools: Sequence[ToolSchema], reply: AIMessage
 ) -> Usage:
@@ -108,6 +131,8 @@ def _event(body: Json) -> str:
 
 
 def _reason(answer: Answer) -> str:
+    if answer.is_cut:
+        return "length"
     return "tool_calls" if answer.message.calls else "stop"
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from adamo_vh.errors import ConfigError
+from adamo_vh.inference.model import Spent
 
 
 class TerminationReason(StrEnum):
@@ -47,6 +48,8 @@ class Stop:
     """In words, where there is more to say than the reason."""
     answer: str = ""
     """What the agent said at the end; the fault, if the episode broke."""
+    spent: Spent | None = None
+    """What was spent on an answer that never came, if one did not."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from adamo_vh.action import Feedback
 from adamo_vh.engine import WorldEvent
 from adamo_vh.errors import RecordError
-from adamo_vh.inference.model import Reply
+from adamo_vh.inference.model import Reply, Spent
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
 from adamo_vh.record.old_format import OLD_FORMAT, upgraded_event
 from adamo_vh.record.run_folder import EVENTS, read_head
@@ -99,6 +99,8 @@ class Ended:
     seconds: float
     why: str = ""
     """Why it was stopped, in words, where there is more to say than the reason."""
+    spent: Spent | None = None
+    """What was spent on an answer that never came, if one did not."""
     type: Literal["ended"] = "ended"
 
 

@@ -146,7 +146,7 @@ class Account:
             sum(reply.requests for reply in replies),
             sum((reply.usage for reply in replies), Usage()),
             _estimated(replies),
-            total_cost(thoughts),
+            total_cost([thought.reply for thought in thoughts]),
             tuple(sorted({reply.rung.value for reply in replies if reply.rung})),
             failures.total(),
             failures,

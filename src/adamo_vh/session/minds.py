@@ -10,9 +10,9 @@ from pathlib import Path
 from adamo_vh.action_server.tools import INSPECT, SURVEY, Tool
 from adamo_vh.cognition.profile import PAPER, Profile, StateText
 from adamo_vh.episode.config import EpisodeConfig
-from adamo_vh.errors import ConfigError
-from adamo_vh.inference.model import Model, ModelInfo, ModelKind, Reply, Rung
+from adamo_vh.inference.model import Model, ModelKind, Reply, Rung
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
+from adamo_vh.inference.players.checked import checked
 from adamo_vh.inference.players.resumed import resumed
 from adamo_vh.inference.players.scripted import ScriptedModel, load_script
 from adamo_vh.inference.registry import create_model
@@ -103,36 +103,13 @@ def opened_model(stack: ExitStack, config: EpisodeConfig, model: Model | None) -
         model: What was handed in.
 
     Raises:
-        ConfigError: What was handed in is no model.
-        ModelConfigError: The model is unknown or lacks a key or an extra.
+        ModelConfigError: The model is unknown or lacks a key or an extra, or is no model.
     """
     if model is not None:
-        check_model(model)
-        return model
+        return checked(model)
     made = model_of(config.model, tools=config.tool_calls, profile=config.profile, seed=config.seed)
     stack.callback(made.info.close)
     return made
-
-
-def check_model(model: object) -> None:
-    """Make sure that something handed in can be asked.
-
-    Raises:
-        ConfigError: It cannot; says what it lacks.
-    """
-    lacking = [
-        name
-        for name, is_there in (
-            ("info, a ModelInfo", isinstance(getattr(model, "info", None), ModelInfo)),
-            ("complete(messages, tools, sampling)", callable(getattr(model, "complete", None))),
-        )
-        if not is_there
-    ]
-    if lacking:
-        raise ConfigError(
-            f"{type(model).__name__} is no model: it lacks {' and '.join(lacking)} "
-            "(see adamo_vh.inference.model.Model)."
-        )
 
 
 def resumed_model(
@@ -153,7 +130,7 @@ def resumed_model(
     """
     said = [thought.reply for thought in recorded.thoughts]
     script = folder / SCRIPT
-    live = model
+    live = None if model is None else checked(model)
     if live is None:
         live = model_of(
             config.model,

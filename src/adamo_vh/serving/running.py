@@ -1,0 +1,51 @@
+"""Run a web application in a thread, on a socket that listens already."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import socket
+
+    from adamo_vh.serving.edge import App
+
+_STOP_S = 20.0
+_MAX_HEADER_BYTES = 64 * 1024
+
+
+@contextmanager
+def running(app: App, opened: socket.socket, name: str, protocol: Any = "h11") -> Iterator[None]:
+    """Serve while the block runs; stops and waits for the end.
+
+    Args:
+        app: The application, behind its `Edge`.
+        opened: Whoever connects before the server runs waits for it.
+        name: Of the thread.
+        protocol: How HTTP is spoken, as uvicorn takes it; one that is built on h11.
+    """
+    import uvicorn
+
+    # Its log is left alone: what happened is told to those who watch.
+    config = uvicorn.Config(
+        app,
+        http=protocol,
+        ws="none",
+        loop="asyncio",
+        lifespan="off",
+        log_config=None,
+        log_level="critical",
+        access_log=False,
+        h11_max_incomplete_event_size=_MAX_HEADER_BYTES,
+        timeout_graceful_shutdown=1,
+    )
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run, args=([opened],), name=name, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        server.should_exit = True
+        thread.join(_STOP_S)
