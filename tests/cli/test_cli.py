@@ -110,7 +110,15 @@ def test_tasks_and_scenes_are_listed(tmp_path: Path) -> None:
 
 def test_doctor_finds_a_working_machine(tmp_path: Path) -> None:
     findings = {f["check"]: f for f in run_json("doctor", cwd=tmp_path)["findings"]}
-    assert set(findings) == {"versions", "cache", "graphics", "test frame", "keys"}
+    assert set(findings) == {
+        "versions",
+        "text",
+        "cache",
+        "runs",
+        "graphics",
+        "test frame",
+        "keys",
+    }
     assert all(finding["ok"] for finding in findings.values())
     assert "objects in view" in findings["test frame"]["found"]
 

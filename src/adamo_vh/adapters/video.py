@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.errors import ConfigError
+from adamo_vh.files import make_folder, naming
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.observation import BodyState, Frame
 from adamo_vh.record.trajectory import Acted, Ended, Event, Observed, Started, Thought
@@ -58,7 +59,9 @@ class VideoRecorder:
 
         if path.suffix not in _CODECS:
             raise ConfigError(f"{path}: films end in {' or '.join(_CODECS)}.")
-        path.parent.mkdir(parents=True, exist_ok=True)
+        # OpenCV says no more than that it cannot; and that not in one line.
+        with naming("written", make_folder(path.parent) / path.name):
+            path.touch()
         code = cv2.VideoWriter.fourcc(*_CODECS[path.suffix])
         self._writer = cv2.VideoWriter(str(path), code, FilmSet.moments_per_s, (WIDTH, HEIGHT))
         if not self._writer.isOpened():

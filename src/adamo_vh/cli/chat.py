@@ -95,17 +95,21 @@ class _Ear:
 
     def _line(self) -> str | None:
         """A line as it may be kept and shown; empty if there is nothing in it."""
+        typed = sys.stdin is not None and sys.stdin.isatty()
         try:
-            said = self._console.input("[bold]you[/bold]         ")
+            said = self._console.input("[bold]you[/bold]         " if typed else "")
         except EOFError:
-            self._console.print()
+            if typed:
+                self._console.print()
             return None
-        if is_text(said):
-            return readable(said).strip()
-        say("That was not UTF-8 text and is left out; set the terminal to UTF-8.", "yellow")
-        if not sys.stdin.isatty():
-            self.code = Exit.WRONG
-        return ""
+        if not is_text(said):
+            say("That is not UTF-8 text and is left out; set the terminal to UTF-8.", "yellow")
+            self.code = self.code if typed else Exit.WRONG
+            return ""
+        said = readable(said).strip()
+        if said and not typed:
+            line("you", said)  # What a pipe says is shown, as what is typed is.
+        return said
 
 
 def _answer(ended: Ended) -> None:

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-import json
 import os
 import platform
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
+from pathlib import Path
 
 import typer
-from rich.console import Console
 
-from adamo_vh.errors import AdamoError
+from adamo_vh.cli.exits import Exit
+from adamo_vh.cli.terminal import marked, put_json, say
+from adamo_vh.errors import AdamoError, ConfigError
+from adamo_vh.files import CACHE_DIR, cache_folder, write_whole
 
 _KEYS = ("OPENAI_API_KEY", "ANTHROPIC_API_KEY", "GOOGLE_API_KEY", "OPENROUTER_API_KEY")
 _PACKAGES = ("adamo-vh", "mujoco", "numpy", "pillow", "opencv-python-headless", "pydantic-ai-slim")
+_LEAST_GB = 0.5
+"""Room that a first run may take: the cache, and a run of sixty steps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,29 +37,34 @@ class Finding:
 def examine(*, as_json: bool) -> None:
     """Run every check; exit 1 if one fails."""
     findings = []
-    console = Console()
     for finding in _findings():
         findings.append(finding)
         if not as_json:
-            mark = "[green]ok  [/green]" if finding.ok else "[red]FAIL[/red]"
-            console.print(f"{mark} [bold]{finding.check}[/bold]", end=" ")
-            console.print(finding.found, markup=False, highlight=False, soft_wrap=True)
-            if finding.fix:
-                console.print(f"     fix: {finding.fix}", markup=False, highlight=False)
+            mark, colour = ("ok", "green") if finding.ok else ("FAIL", "red")
+            marked(mark, colour, finding.check, finding.found, finding.fix)
     if as_json:
-        typer.echo(json.dumps({"findings": [asdict(f) for f in findings]}))
-    if not all(finding.ok for finding in findings):
-        raise typer.Exit(1)
+        put_json({"findings": [asdict(f) for f in findings]})
+    failed = [finding for finding in findings if not finding.ok]
+    if failed:
+        if not as_json:
+            first = failed[0]
+            say(f"{len(failed)} of {len(findings)} checks failed. {first.check}: {first.found}")
+        raise typer.Exit(Exit.NO)
 
 
 def _findings() -> Iterator[Finding]:
     yield Finding("versions", True, _versions())
-    yield _guarded("cache", _cache, "set ADAMO_VH_CACHE_DIR to a folder that can be written")
-    yield _guarded("graphics", _graphics, "apt-get install libegl1 libopengl0 libgl1-mesa-dri")
-    yield _guarded("test frame", _test_frame, "see the line above; then run adamo-vh doctor again")
+    yield _guarded("text", _text, "export LC_ALL=C.UTF-8 and unset PYTHONIOENCODING")
+    yield _guarded("cache", _cache, f"set {CACHE_DIR} to a folder that can be written")
+    yield _guarded("runs", _runs, "go to a folder that can be written, or always give --out")
+    graphics = _guarded("graphics", _graphics, "")
+    yield graphics
+    if graphics.ok:
+        yield _guarded("test frame", _test_frame, "unset LIBGL_* and GALLIUM_*, and try again")
+    else:
+        yield Finding("test frame", False, "not tried: no graphics", "see the line above")
     yield _way_to_models()
-    set_keys = [key for key in _KEYS if os.environ.get(key)]
-    yield Finding("keys", True, f"set: {', '.join(set_keys) or 'none (the baseline needs none)'}")
+    yield _keys()
 
 
 def _way_to_models() -> Finding:
@@ -77,17 +87,37 @@ def _versions() -> str:
     return f"Python {platform.python_version()} on {sys.platform}; {packages}"
 
 
-def _cache() -> str:
-    from adamo_vh.session.builtin import asset_folder
+def _text() -> str:
+    """Whether any language can be printed, and files be named in it."""
+    printed = (sys.stdout.encoding or "none").lower()
+    named = sys.getfilesystemencoding().lower()
+    found = f"printed as {printed}, files named in {named}"
+    if {printed.replace("-", ""), named.replace("-", "")} != {"utf8"}:
+        raise ConfigError(f"{found}: what it cannot say is printed as ?")
+    return found
 
-    folder = asset_folder()
-    folder.mkdir(parents=True, exist_ok=True)
-    probe = folder / f".probe-{os.getpid()}"
-    probe.write_bytes(b"")
-    probe.unlink()
-    files = [path for path in folder.rglob("*") if path.is_file()]
+
+def _cache() -> str:
+    _room(cache_folder())
+    files = [path for path in cache_folder().rglob("*") if path.is_file()]
     megabytes = sum(path.stat().st_size for path in files) / 1e6
-    return f"{folder}: {len(files)} files, {megabytes:.1f} MB"
+    return f"{cache_folder()}: {len(files)} files, {megabytes:.1f} MB"
+
+
+def _runs() -> str:
+    # Only where it is there: looking must not make a folder.
+    folder = Path("runs") if Path("runs").exists() else Path()
+    return f"{folder.absolute()}: {_room(folder):.0f} GB free"
+
+
+def _room(folder: Path) -> float:
+    """Make sure that a folder can be written and has room; how much, in GB."""
+    probe = write_whole(folder / f".probe-{os.getpid()}", b"")
+    probe.unlink()
+    free_gb = shutil.disk_usage(folder).free / 1e9
+    if free_gb < _LEAST_GB:
+        raise ConfigError(f"{folder}: only {free_gb:.2f} GB free; a first run takes {_LEAST_GB} GB")
+    return free_gb
 
 
 def _graphics() -> str:
@@ -100,3 +130,8 @@ def _test_frame() -> str:
     from adamo_vh.session.builtin import check_machine
 
     return check_machine()
+
+
+def _keys() -> Finding:
+    named = [key for key in _KEYS if os.environ.get(key)]
+    return Finding("keys", True, f"set: {', '.join(named) or 'none (the baseline needs none)'}")

@@ -11,7 +11,8 @@ from rich.console import Console
 from rich.table import Table
 
 from adamo_vh.cli.exits import Exit
-from adamo_vh.cli.terminal import put_json, say
+from adamo_vh.cli.terminal import complain, put_json, say
+from adamo_vh.errors import FileError
 from adamo_vh.files import write_whole
 from adamo_vh.session.builtin import (
     SceneReport,
@@ -52,7 +53,11 @@ def list_scenes(*, as_json: bool) -> None:
 def check(file: str, out: Path | None, *, as_json: bool) -> None:
     """Look a scene over, with pictures; exit 1 if something is wrong with it."""
     report = inspect_scene_file(file)
-    pictures = _written(report, out)
+    try:
+        pictures = _written(report, out)
+    except FileError as error:
+        complain(f"warning: no pictures: {error}")  # What was found is not lost for them.
+        pictures = []
     if as_json:
         rows = [asdict(finding) for finding in report.findings]
         paths = [str(path) for path in pictures]

@@ -52,7 +52,9 @@ class _Way(io.RawIOBase):
 def prepare() -> None:
     """Make the three streams of this process ones that never raise for what goes through them."""
     sys.stdout, sys.stderr = _patient(sys.stdout), _patient(sys.stderr)
-    if isinstance(sys.stdin, io.TextIOWrapper):
+    if sys.stdin is None:
+        sys.stdin = io.StringIO()  # Closed by the caller: nothing is said.
+    elif isinstance(sys.stdin, io.TextIOWrapper):
         # What is no text comes through, to be refused in words; see `is_text`.
         sys.stdin.reconfigure(errors="surrogateescape")
     warnings.showwarning = lambda message, *_, **__: complain(f"warning: {message}")

@@ -16,7 +16,7 @@ from adamo_vh.observation import Percept
 from adamo_vh.runtime import physics
 from adamo_vh.runtime.builtin_body import BuiltinBody
 from adamo_vh.runtime.embodiment import Stance
-from adamo_vh.runtime.graphics import check_process
+from adamo_vh.runtime.graphics import check_process, load_mujoco
 from adamo_vh.runtime.happenings import Happenings
 from adamo_vh.runtime.human.looks import VARIANTS, load_figure
 from adamo_vh.runtime.inspection.settled import settled_world
@@ -52,6 +52,7 @@ class BuiltinEngine:
         """
         self._scene = load_scene(scene) if isinstance(scene, str) else scene
         check_process()
+        load_mujoco()
         self._info = _described(self._scene, scene, figure)
         self._world: CompiledWorld = settled_world(self._scene, load_figure(figure))
         self.turns = Turns()

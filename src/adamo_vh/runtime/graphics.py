@@ -12,7 +12,7 @@ import ctypes
 import os
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, wait
 from functools import partial
 from queue import SimpleQueue
@@ -138,21 +138,63 @@ def open_gl(width_px: int, height_px: int) -> Any:
     Raises:
         RenderingError: Neither works; names the packages that help.
     """
-    asked = os.environ.get("MUJOCO_GL", "").lower()
-    if asked and asked not in _BACKENDS:
-        raise RenderingError(
-            f"MUJOCO_GL is {asked!r}: ADAMO draws off screen with egl or osmesa; set one of these "
-            "or unset it."
-        )
+    asked = _asked_backend()
     problems = []
     for backend in [asked] if asked else _BACKENDS:
         try:
             return _open_backend(backend, width_px, height_px)
         except _NO_GL as error:
             problems.append(f"{backend}: {error}")
-    if device := os.environ.get("MUJOCO_EGL_DEVICE_ID"):
-        problems.append(f"MUJOCO_EGL_DEVICE_ID is {device!r}: a device's number, or unset it")
-    raise RenderingError(f"No OpenGL to draw with ({'; '.join(problems)}); {_FIX}.")
+    raise RenderingError(
+        f"No OpenGL to draw with ({'; '.join(problems)}); {_fix(asked, problems)}."
+    )
+
+
+def load_mujoco() -> None:
+    """Import MuJoCo, which looks for what `MUJOCO_GL` names when it is first imported.
+
+    Raises:
+        RenderingError: It names what is not there; says what to set.
+    """
+    asked = _asked_backend()
+    device = os.environ.get("MUJOCO_EGL_DEVICE_ID")
+    if device and not device.strip().isdecimal():
+        raise RenderingError(
+            f"MUJOCO_EGL_DEVICE_ID is {device!r}; unset it, or set it to a device's number, like 0."
+        )
+    try:
+        import mujoco  # noqa: F401
+    except _NO_GL as error:
+        if not asked:
+            raise
+        # What a failed import leaves behind would hide the reason the next time.
+        for name in [n for n in sys.modules if n.split(".")[0] in ("mujoco", "OpenGL")]:
+            del sys.modules[name]
+        raise RenderingError(
+            f"MUJOCO_GL is {asked!r}, whose library is missing here; {_fix(asked, ())}."
+        ) from error
+
+
+def _asked_backend() -> str:
+    """What `MUJOCO_GL` asks for; empty if it leaves the choice."""
+    asked = os.environ.get("MUJOCO_GL", "").lower().strip()
+    if asked and asked not in _BACKENDS:
+        raise RenderingError(
+            f"MUJOCO_GL is {asked!r}: ADAMO draws off screen with egl or osmesa; set one of these "
+            "or unset it."
+        )
+    return asked
+
+
+def _fix(asked: str, problems: Sequence[str]) -> str:
+    """What helps if no OpenGL could be opened."""
+    device = os.environ.get("MUJOCO_EGL_DEVICE_ID")
+    missing = any(problem.startswith("egl: libEGL") for problem in problems)
+    if device and asked != "osmesa" and not missing:
+        return f"unset MUJOCO_EGL_DEVICE_ID, which is {device!r}, or set it to a device's number"
+    if asked == "osmesa":
+        return "install it with 'apt-get install libosmesa6', or unset MUJOCO_GL"
+    return _FIX
 
 
 def _open_backend(backend: str, width_px: int, height_px: int) -> Any:
@@ -179,6 +221,7 @@ def backend_name() -> str:
     Raises:
         RenderingError: None works.
     """
+    load_mujoco()
 
     def opened() -> str:
         context = open_gl(64, 64)

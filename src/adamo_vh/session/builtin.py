@@ -137,13 +137,6 @@ def write_figure(file: Path, who: str) -> str:
     return f"{figure.triangle_count} triangles, clips {names}"
 
 
-def asset_folder() -> Path:
-    """Where baked assets are cached."""
-    from adamo_vh.runtime.assets.bake import cache_file
-
-    return cache_file("key").parent
-
-
 def graphics_name() -> str:
     """Which OpenGL this machine draws with.
 

@@ -1,0 +1,64 @@
+"""Runs `adamo-vh` as people do: as a process of its own, whose streams are bytes."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+SMALL = ("--resolution", "640x360")
+
+
+@dataclass(frozen=True)
+class Done:
+    """What a process printed, and how it ended."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def all(self) -> str:
+        return self.out + self.err
+
+
+def adamo(
+    *arguments: str | bytes,
+    cwd: Path,
+    said: bytes = b"",
+    flags: str = "",
+    environment: Mapping[str, str] | None = None,
+) -> Done:
+    """Run a command to its end.
+
+    Args:
+        arguments: Of the command.
+        cwd: Where.
+        said: What stands on its standard input.
+        flags: Of Python.
+        environment: Variables set otherwise.
+    """
+    command = [sys.executable, *flags.split(), "-m", "adamo_vh", *arguments]
+    done = subprocess.run(
+        command,
+        input=said,
+        capture_output=True,
+        cwd=cwd,
+        check=False,
+        env={**os.environ, **(environment or {})},
+    )
+    out, err = (stream.decode("utf-8", "replace") for stream in (done.stdout, done.stderr))
+    assert "Traceback" not in err, err
+    return Done(done.returncode, out, err)
+
+
+def script(folder: Path, *entries: dict[str, Any]) -> str:
+    """The URI of a scripted model."""
+    path = folder / "said.json"
+    path.write_text(json.dumps(entries))
+    return f"scripted:{path}"
