@@ -6,7 +6,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -55,6 +55,30 @@ def adamo(
     out, err = (stream.decode("utf-8", "replace") for stream in (done.stdout, done.stderr))
     assert "Traceback" not in err, err
     return Done(done.returncode, out, err)
+
+
+_ONE_PROCESS = """
+import contextlib, io, json, sys
+from adamo_vh.cli import _run
+for words in json.load(sys.stdin):
+    sys.argv, sys.stdin = ["adamo-vh", *words], io.StringIO("hi")
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = int(_run())
+    print(json.dumps([code, out.getvalue(), err.getvalue()]), flush=True)
+"""
+
+
+def walk(commands: Sequence[Sequence[str]], *, cwd: Path) -> list[Done]:
+    """Run many commands one after another in one process, which takes a tenth of the time."""
+    told = subprocess.run(
+        [sys.executable, "-c", _ONE_PROCESS],
+        input=json.dumps(commands).encode(),
+        stdout=-1,
+        cwd=cwd,
+        check=True,
+    )
+    return [Done(*json.loads(line)) for line in told.stdout.splitlines()]
 
 
 def script(folder: Path, *entries: dict[str, Any]) -> str:

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from tests.cli.process import SMALL, adamo, script
+from tests.cli.process import SMALL, adamo, script, walk
 
 HOSTILE = "x\x1b[31mRED\x1b]0;owned\x07\x9b2J\u202eevil\u2066\u200bz\r\x08"
 BAD = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200b-\u200f\u202a-\u202e\u2060-\u206f\ufeff]")
@@ -70,28 +70,12 @@ WALK = [
 ]
 """Every command, with a hostile text in each place that takes one."""
 
-ONE_PROCESS = """
-import contextlib, io, json, sys
-from adamo_vh.cli import _run
-for words in json.load(sys.stdin):
-    sys.argv = ["adamo-vh", *words]
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        code = int(_run())
-    print(json.dumps([code, out.getvalue(), err.getvalue()]), flush=True)
-"""
-
 
 def test_every_command_names_hostile_arguments_safely(tmp_path: Path) -> None:
-    command = [sys.executable, "-c", ONE_PROCESS]
-    said = json.dumps(WALK).encode()
-    done = subprocess.run(command, input=said, capture_output=True, cwd=tmp_path, check=True)
-    told = [json.loads(line) for line in done.stdout.splitlines()]
-    assert len(told) == len(WALK)
-    for words, (code, out, err) in zip(WALK, told, strict=True):
-        assert code in (1, 2), words
-        clean(out + err)
-        assert len(err.splitlines()) == 1, words
+    for words, done in zip(WALK, walk(WALK, cwd=tmp_path), strict=True):
+        assert done.code in (1, 2), words
+        clean(done.all)
+        assert len(done.err.splitlines()) == 1, words
 
 
 def test_a_hostile_scene_file_is_told_safely(tmp_path: Path) -> None:
