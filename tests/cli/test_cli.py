@@ -117,6 +117,7 @@ def test_doctor_finds_a_working_machine(tmp_path: Path) -> None:
         "runs",
         "graphics",
         "test frame",
+        "way to models",
         "keys",
     }
     assert all(finding["ok"] for finding in findings.values())
