@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from adamo_vh.action import Drop, Look, Pick, Survey, Walk, tool_schema
 from adamo_vh.inference.messages import AIMessage
 from adamo_vh.inference.reasoning_text import split_reasoning
-from adamo_vh.inference.text_calls import UnparsedCall, fresh_id, read_calls
+from adamo_vh.inference.text_calls import UnparsedCall, read_calls
+from adamo_vh.inference.tool_names import fresh_id
 
 TOOLS = [tool_schema(action) for action in (Look, Walk, Pick, Drop, Survey)]
 ARGUMENTS = {"object": "Plate_57"}

@@ -8,17 +8,16 @@ read. So no call is ever taken for a final answer, and no mention of one for a c
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.arguments import dump_arguments, encodable_text
+from adamo_vh.inference.arguments import dump_arguments
 from adamo_vh.inference.call_syntax import GAP, MARK, OPENING, Syntax, WrittenCall, suspicious
 from adamo_vh.inference.json_scan import JsonScan, whole_json
 from adamo_vh.inference.messages import AIMessage, ToolCall
-from adamo_vh.inference.tool_names import NAMESPACE
+from adamo_vh.inference.tool_names import NAMESPACE, fresh_id
 
 _BROKEN = "holds a call in its text that is not complete or not well formed."
 _INLINE = "holds a call in the middle of its text, so that it is not clear whether it is meant."
@@ -77,16 +76,6 @@ def read_calls(
         ids.add(call_id)
         read.append(ToolCall(call_id, call.name, call.arguments, dump_arguments(call.arguments)))
     return AIMessage(note, tuple(read))
-
-
-def fresh_id(seed: str, taken: Collection[str]) -> str:
-    """A call id that follows from a text: nine letters and digits, which every server accepts."""
-    number = 0
-    while True:
-        digest = hashlib.sha256(f"{number} {encodable_text(seed)}".encode()).hexdigest()[:9]
-        if digest not in taken:
-            return digest
-        number += 1
 
 
 def _places(text: str, tools: Sequence[ToolSchema]) -> Iterator[_Place]:

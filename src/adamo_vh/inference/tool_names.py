@@ -1,9 +1,12 @@
-"""Names of tools: which one a model means, and how a name goes back to a server."""
+"""Names of tools and ids of calls: which tool a model means, and what goes back to a server."""
 
 from __future__ import annotations
 
+import hashlib
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+
+from adamo_vh.inference.arguments import encodable_text
 
 NAMESPACE = r"(?:functions?|tools?|default_api|api|multi_tool_use)[.:/]"
 """What models put before the name of a tool, as a regular expression."""
@@ -11,6 +14,8 @@ _DRESS = re.compile(rf"\A\W{{0,9}}(?:{NAMESPACE})?|(?:<\|.*|:\d+|\W{{1,9}})\Z", 
 _ALLOWED = re.compile(r"[^A-Za-z0-9_-]")
 _LONGEST = 64
 _NAMELESS = "unnamed"
+_STRICT_ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
+_ID = re.compile(r"[A-Za-z0-9_.:-]{1,64}")
 
 
 def meant_tool(written: str, names: Iterable[str]) -> str | None:
@@ -35,6 +40,27 @@ def wire_name(name: str) -> str:
     """The name in the letters that every server takes: what is odd in it becomes ``_``."""
     plain = _ALLOWED.sub("_", name).strip("_-")[:_LONGEST]
     return plain if plain[:1].isalpha() else f"{_NAMELESS}_{plain}".rstrip("_")[:_LONGEST]
+
+
+def wire_id(call_id: str, source: str) -> str:
+    """The id of a call as a server takes it; another one stands for one that it would refuse.
+
+    Args:
+        call_id: The id, mostly the server's own.
+        source: Who gets it, e.g. "anthropic:NAME": its API allows the fewest letters.
+    """
+    allowed = _STRICT_ID if source.startswith("anthropic") else _ID
+    return call_id if allowed.fullmatch(call_id) else fresh_id(call_id, ())
+
+
+def fresh_id(seed: str, taken: Collection[str]) -> str:
+    """A call id that follows from a text: nine letters and digits, which every server accepts."""
+    number = 0
+    while True:
+        digest = hashlib.sha256(f"{number} {encodable_text(seed)}".encode()).hexdigest()[:9]
+        if digest not in taken:
+            return digest
+        number += 1
 
 
 def _folded(name: str) -> str:

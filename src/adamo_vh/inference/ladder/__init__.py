@@ -29,7 +29,8 @@ from adamo_vh.inference.messages import AIMessage, HumanMessage, Message, TextPa
 from adamo_vh.inference.model import Ending, ModelInfo, Reply, Rung, Sampling, Spent
 from adamo_vh.inference.prompts import render
 from adamo_vh.inference.remote.capabilities import Capabilities
-from adamo_vh.inference.text_calls import fresh_id, read_calls
+from adamo_vh.inference.text_calls import read_calls
+from adamo_vh.inference.tool_names import fresh_id
 
 _JSON, _REACT = JsonForm(), ReactForm()
 _FORMS: dict[Rung, tuple[Form, ...]] = {

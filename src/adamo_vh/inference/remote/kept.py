@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from adamo_vh.inference.arguments import encodable_text, wire_arguments
 from adamo_vh.inference.messages import AIMessage
+from adamo_vh.inference.tool_names import wire_id, wire_name
 
 if TYPE_CHECKING:
     from pydantic_ai import messages as wire
@@ -77,8 +78,8 @@ def to_response(message: AIMessage, source: str) -> wire.ModelResponse:
 
     kept = _load(message.kept, source)
     if kept is None:
-        return wire.ModelResponse(parts=list(_plain_parts(message)))
-    plain = _plain_parts(message)
+        return wire.ModelResponse(parts=list(_plain_parts(message, source)))
+    plain = _plain_parts(message, source)
     calls = [part for part in plain if isinstance(part, wire.ToolCallPart)]
     notes = [part for part in plain if isinstance(part, wire.TextPart)]
     texts = [part.content for part in kept.parts if isinstance(part, wire.TextPart)]
@@ -89,7 +90,8 @@ def to_response(message: AIMessage, source: str) -> wire.ModelResponse:
             parts += [_as_kept(call, part) for call in calls[:1]]
             del calls[:1]
         elif isinstance(part, wire.TextPart):
-            parts += [part] if untouched else notes
+            # Anthropic refuses a block of blanks, though it writes some itself.
+            parts += ([part] if part.content.strip() else []) if untouched else notes
             notes.clear()
         else:
             parts.append(part)
@@ -123,13 +125,15 @@ def _load(kept: str, source: str) -> wire.ModelResponse | None:
     return response if isinstance(response, wire.ModelResponse) else None
 
 
-def _plain_parts(message: AIMessage) -> list[wire.ModelResponsePart]:
+def _plain_parts(message: AIMessage, source: str) -> list[wire.ModelResponsePart]:
     from pydantic_ai import messages as wire
 
     return [
-        *([wire.TextPart(encodable_text(message.text))] if message.text else ()),
+        *([wire.TextPart(encodable_text(message.text))] if message.text.strip() else ()),
         *(
-            wire.ToolCallPart(encodable_text(call.name), wire_arguments(call), tool_call_id=call.id)
+            wire.ToolCallPart(
+                wire_name(call.name), wire_arguments(call), tool_call_id=wire_id(call.id, source)
+            )
             for call in message.calls
         ),
     ]

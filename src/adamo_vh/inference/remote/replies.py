@@ -13,7 +13,8 @@ from adamo_vh.inference.model import Ending
 from adamo_vh.inference.reasoning_text import split_reasoning
 from adamo_vh.inference.remote.endings import finish_reason, meaning
 from adamo_vh.inference.remote.kept import dump_kept
-from adamo_vh.inference.text_calls import UnparsedCall, fresh_id, read_calls
+from adamo_vh.inference.text_calls import UnparsedCall, read_calls
+from adamo_vh.inference.tool_names import fresh_id
 
 if TYPE_CHECKING:
     from pydantic_ai import messages as wire

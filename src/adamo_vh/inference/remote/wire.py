@@ -20,6 +20,7 @@ from adamo_vh.inference.messages import (
 from adamo_vh.inference.model import Usage
 from adamo_vh.inference.remote.clients import Connection
 from adamo_vh.inference.remote.kept import to_response
+from adamo_vh.inference.tool_names import wire_id, wire_name
 
 if TYPE_CHECKING:
     from pydantic_ai import messages as wire
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 _Input = SystemMessage | HumanMessage | ToolMessage
 
 _NO_RESULT = "Not executed."
+_NOTHING = "(nothing)"
+"""Stands for an empty text, which servers refuse."""
 CAPTION = "Picture from"
 """Says whose picture follows, where it cannot be in the result itself."""
 
@@ -96,10 +99,10 @@ def _turn(
     shown: list[Part] = []
     for call in calls:
         result = results.pop(call.id, None) or ToolMessage(call.id, call.name, _NO_RESULT)
-        inside = connection.pictures_in_results
-        parts.append(_result(result, with_pictures=inside))
-        if result.images and not inside:
-            shown += [TextPart(f"{CAPTION} {result.name} ({call.id}):"), *result.images]
+        parts.append(_result(result, connection))
+        if result.images and not connection.pictures_in_results:
+            about = f"{CAPTION} {wire_name(result.name)} ({wire_id(call.id, connection.wire)}):"
+            shown += [TextPart(about), *result.images]
     if shown:
         parts.append(_human(HumanMessage(tuple(shown))))
     answered = {call.id for call in calls}
@@ -126,19 +129,19 @@ def _system(message: SystemMessage, *, as_system: bool) -> wire.ModelRequestPart
     return wire.SystemPromptPart(text) if as_system else wire.UserPromptPart(text)
 
 
-def _result(message: ToolMessage, *, with_pictures: bool) -> wire.ToolReturnPart:
+def _result(message: ToolMessage, connection: Connection) -> wire.ToolReturnPart:
     from pydantic_ai import messages as wire
 
-    text = encodable_text(message.text)
+    text = encodable_text(message.text).strip() or _NOTHING
     pictures = [
         wire.BinaryContent(image.data, media_type=image.media_type)
         for image in message.images
-        if with_pictures
+        if connection.pictures_in_results
     ]
     return wire.ToolReturnPart(
-        tool_name=message.name,
+        tool_name=wire_name(message.name),
         content=[text, *pictures] if pictures else text,
-        tool_call_id=message.call_id,
+        tool_call_id=wire_id(message.call_id, connection.wire),
     )
 
 
@@ -150,7 +153,8 @@ def _human(message: HumanMessage) -> wire.UserPromptPart:
         if isinstance(part, TextPart)
         else wire.BinaryContent(part.data, media_type=part.media_type)
         for part in message.parts
-    ]
+        if not isinstance(part, TextPart) or part.text.strip()
+    ] or [_NOTHING]
     if len(content) == 1 and isinstance(content[0], str):
         return wire.UserPromptPart(content[0])
     return wire.UserPromptPart(content)
