@@ -35,6 +35,16 @@ _PERMANENT = re.compile(
 )
 """Faults of the request that servers report as their own: no waiting mends them."""
 
+_NO_PICTURES = re.compile(
+    r"mmproj|image input is not supported|not support\w* (?:image|vision|multimodal)"
+    r"|is not a multimodal model|at most 0 image",
+    re.IGNORECASE,
+)
+_FEW_PICTURES = re.compile(
+    r"at most (\d{1,3}) image|(?:only (?:one|1|a single)|multiple|too many) images?\b",
+    re.IGNORECASE,
+)
+
 _TOO_LONG = re.compile(
     r"context[ _](?:length|window|size)|maximum context|prompt is too long|exceed_context"
     r"|input token count .{0,200}? exceeds|maximum prompt length",
@@ -147,12 +157,20 @@ def _failed(status: int, body: Any, exchange: Exchange, *, hidden: bool = False)
     if status != 429 and _TOO_LONG.search(everything):
         text = f"The prompt is longer than the model's context. {text} Keep fewer steps in it."
         return Failure(text, False, status=status, words=said)
-    if fix := _FIXES.get(status):
+    if fix := _picture_fix(everything) or _FIXES.get(status):
         text = f"{text} {fix}"
     final = _PERMANENT.search(everything) or _is_out_of_credit(body, everything)
     retryable = (status in _RETRYABLE_STATUS or status >= 500) and not final
     waits = _retry_after_s(exchange.headers, exchange.text)
     return Failure(text, retryable, waits, status=status, words=said)
+
+
+def _picture_fix(complaint: str) -> str:
+    """What to do about a complaint of too many pictures; empty if there is none."""
+    if _NO_PICTURES.search(complaint):
+        return "Leave the pictures out: --switch pictures=none."
+    found = _FEW_PICTURES.search(complaint)
+    return f"Keep fewer pictures in the prompt: --switch pictures={found[1] or 1}." if found else ""
 
 
 def _is_out_of_credit(body: Any, everything: str) -> bool:
@@ -208,6 +226,9 @@ def read_error(error: Exception) -> Failure:
 SEVERAL_SYSTEM = "several_system_messages"
 """Not a parameter, but refused like one: by the chat templates of some models."""
 
+USER_AFTER_TOOL = "user_after_tool"
+"""Nor this: some servers want an answer between the results of calls and what a user says."""
+
 _SPELLINGS = {
     "top_p": r"top_?p",
     "temperature": r"temperature",
@@ -215,6 +236,7 @@ _SPELLINGS = {
     "seed": r"seed",
     "max_tokens": r"max_tokens|max_completion_tokens|max_?output_?tokens",
     SEVERAL_SYSTEM: r"system (?:message|role)",
+    USER_AFTER_TOOL: r"after (?:the )?(?:role )?['\"]?tool|roles must alternate|expected last role",
 }
 """How servers spell what may go, in the order in which it goes."""
 
@@ -233,7 +255,7 @@ def refused_setting(exchange: Exchange, present: Collection[str]) -> str | None:
     """
     if exchange.status == 500:
         # Some servers report as a fault of theirs what a chat template refuses.
-        present = {SEVERAL_SYSTEM} & {*present}
+        present = {SEVERAL_SYSTEM, USER_AFTER_TOOL} & {*present}
     elif exchange.status not in _COMPLAINT or _TOO_LONG.search(exchange.text[:_JUDGED]):
         return None
     text = _complaint(exchange.body)[:_JUDGED]

@@ -229,7 +229,11 @@ class ProviderModel:
             several_calls=self._several_calls,
         )
         prompt = to_wire(
-            asking.messages, self._connection, self._source, one_system=self._settings.one_system
+            asking.messages,
+            self._connection,
+            self._source,
+            one_system=self._settings.one_system,
+            bridged=self._settings.bridged,
         )
         outcome: _Answer | Failure
         try:
@@ -245,6 +249,8 @@ class ProviderModel:
         asking.requests += exchange.requests or 1
         # Not every provider's library can be watched: then it is believed.
         asking.settings = sent_settings(exchange.sent) or settings
+        if reshaped := self._settings.reshaped:
+            asking.settings = {**asking.settings, "reshaped": [*reshaped]}
         asking.seconds = exchange.seconds
         if exchange.withheld:
             return _inexact(f"The client library does not send {exchange.withheld[0]}.")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from itertools import pairwise
 from threading import Lock
 from typing import Any
 
 from adamo_vh.inference.model import Sampling
 from adamo_vh.inference.remote.exchange import Exchange, sent_settings
-from adamo_vh.inference.remote.faults import SEVERAL_SYSTEM, refused_setting
+from adamo_vh.inference.remote.faults import SEVERAL_SYSTEM, USER_AFTER_TOOL, refused_setting
 
 EXACT = ("temperature", "top_p")
 """Settings that `Sampling.exact` insists on."""
@@ -74,6 +75,16 @@ class Settings:
         """Whether system text may only come once, at the start."""
         return SEVERAL_SYSTEM in self._refused
 
+    @property
+    def bridged(self) -> bool:
+        """Whether what a user says may not follow the results of calls."""
+        return USER_AFTER_TOOL in self._refused
+
+    @property
+    def reshaped(self) -> tuple[str, ...]:
+        """For what refusals the conversation is told in another shape."""
+        return tuple(sorted({SEVERAL_SYSTEM, USER_AFTER_TOOL} & self._refused))
+
     def take_refusal(self, exchange: Exchange, wanted: Collection[str], sampling: Sampling) -> str:
         """Remember what an answer refuses.
 
@@ -105,4 +116,9 @@ def _removable(exchange: Exchange, wanted: Collection[str], sampling: Sampling) 
     if sampling.exact:
         found -= {*EXACT}
     roles = [message.get("role") for message in exchange.sent.get("messages", ())]
-    return found | {SEVERAL_SYSTEM} if roles.count("system") > 1 else found
+    found |= {SEVERAL_SYSTEM} if roles.count("system") > 1 else set()
+    said_after_results = any(
+        role == "tool" and following not in ("tool", "assistant")
+        for role, following in pairwise(roles)
+    )
+    return found | {USER_AFTER_TOOL} if said_after_results else found

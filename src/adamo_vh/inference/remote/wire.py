@@ -18,6 +18,7 @@ from adamo_vh.inference.messages import (
     ToolMessage,
 )
 from adamo_vh.inference.model import Usage
+from adamo_vh.inference.prompts import render
 from adamo_vh.inference.remote.clients import Connection
 from adamo_vh.inference.remote.kept import to_response
 from adamo_vh.inference.tool_names import wire_id, wire_name
@@ -37,7 +38,12 @@ CAPTION = "Picture from"
 
 
 def to_wire(
-    messages: Iterable[Message], connection: Connection, source: str, *, one_system: bool = False
+    messages: Iterable[Message],
+    connection: Connection,
+    source: str,
+    *,
+    one_system: bool = False,
+    bridged: bool = False,
 ) -> list[wire.ModelMessage]:
     """Translate a prompt.
 
@@ -51,6 +57,8 @@ def to_wire(
         connection: Where it goes.
         source: Who gets it; see `kept`.
         one_system: Whether all system text at the start must be one message, and none may follow.
+        bridged: Whether an answer must stand between results and what follows them, and that must
+            be one message.
     """
     from pydantic_ai.messages import ModelRequest
 
@@ -62,9 +70,26 @@ def to_wire(
     for asked, following in _turns(messages):
         if asked is not None:
             translated.append(to_response(asked, source))
-        if parts := _turn(asked, following, connection):
-            translated.append(ModelRequest(parts=parts))
+        parts = _turn(asked, following, connection)
+        translated += _bridged(parts) if bridged else [ModelRequest(parts=parts)] if parts else []
     return translated
+
+
+def _bridged(parts: Sequence[wire.ModelRequestPart]) -> list[wire.ModelMessage]:
+    """A request whose results are followed by an answer, and that by one message of the user."""
+    from pydantic_ai import messages as wire
+
+    results = [part for part in parts if isinstance(part, wire.ToolReturnPart)]
+    system = [part for part in parts if isinstance(part, wire.SystemPromptPart)]
+    content: list[wire.UserContent] = []
+    for part in parts:
+        if isinstance(part, wire.UserPromptPart):
+            content += [part.content] if isinstance(part.content, str) else part.content
+    said = [*system, *([wire.UserPromptPart(content)] if content else ())]
+    if not (results and said):
+        return [wire.ModelRequest(parts=[*results, *said])] if results or said else []
+    bridge = wire.ModelResponse(parts=[wire.TextPart(render("bridge"))])
+    return [wire.ModelRequest(parts=results), bridge, wire.ModelRequest(parts=said)]
 
 
 def _with_one_system(messages: Iterable[Message]) -> list[Message]:
