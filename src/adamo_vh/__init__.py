@@ -3,7 +3,7 @@
 One call runs an episode: `adamo_vh.run_episode("Put the plate on the floor", model="baseline")`.
 A `Session` is what it is made of; a conversation is a session with several instructions. Everything
 that stands behind an interface can be handed in from outside: `World` and `Body`, `Model`, `Tool`,
-`Memory`, `Task`, `Labeling`, `Guard`, `Observer`.
+`Memory`, `Task`, `Tagger` (as `Labeling`), `Guard`, `Observer`.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from adamo_vh.inference.model import ModelInfo as ModelInfo
     from adamo_vh.inference.model import Reply as Reply
     from adamo_vh.perception import Labeling as Labeling
+    from adamo_vh.perception import Tagger as Tagger
     from adamo_vh.record.termination import Limits as Limits
     from adamo_vh.record.termination import Stop as Stop
     from adamo_vh.record.trajectory import Observer as Observer
@@ -52,7 +53,7 @@ _HOMES = {
     "episode.result": "EpisodeResult",
     "errors": "AdamoError",
     "inference.model": "Model ModelInfo Reply",
-    "perception": "Labeling",
+    "perception": "Labeling Tagger",
     "record.termination": "Limits Stop",
     "record.trajectory": "Observer",
     "session.bodies": "create_engine",

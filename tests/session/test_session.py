@@ -166,6 +166,22 @@ def test_a_replay_names_the_tool_that_is_missing(tmp_path: Path, engine: Builtin
     assert (report.steps, report.mismatches) == (2, ())
 
 
+def test_a_conversation_goes_on_past_a_tool_that_failed(
+    tmp_path: Path, engine: BuiltinEngine
+) -> None:
+    """What broke an earlier instruction is not tried again on the way back."""
+    replies = (says("Wave", times=10), says("Wave", times=2))
+    config = EpisodeConfig.of("Wave", resolution=SMALL)
+    parts: Any = {"engine": engine, "tools": OWN_TOOLS}
+    with Session.begin(config, tmp_path, model=model(*replies), **parts) as session:
+        assert session.say("Wave").reason is TerminationReason.BROKEN
+        assert session.say("Wave less").reason is TerminationReason.ANSWERED
+    before = (tmp_path / EVENTS).read_bytes()
+    with Session.resume(tmp_path, model=model(), **parts) as session:
+        assert (tmp_path / EVENTS).read_bytes() == before
+        assert session.say("Thanks").reason is TerminationReason.ANSWERED
+
+
 class Crashing:
     """A model that breaks in a way nobody foresaw."""
 

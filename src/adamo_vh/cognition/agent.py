@@ -145,6 +145,8 @@ class Agent:
         """Execute the calls of a turn up to the first surprise; every one gets its answer."""
         results: list[Result] = []
         for wish in turn.wishes:
+            if self._stops.ends_here:
+                return
             why_not = self._why_not(wish, results)
             results.append(self._left_out(wish, why_not) if why_not else self._carry_out(wish))
         self._look_again(results)

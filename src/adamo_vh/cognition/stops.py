@@ -57,6 +57,11 @@ class Stops:
         for guard in self._guards:
             guard.notify(event, frame)
 
+    @property
+    def ends_here(self) -> bool:
+        """Whether the end comes next in the record: what it broke on then is not tried again."""
+        return bool(self._ahead) and isinstance(self._ahead[0], Ended)
+
     def stop(self, errand: Errand, steps: int) -> Stop | None:
         """Why to stop now; None to go on.
 
