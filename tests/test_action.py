@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
@@ -20,7 +23,7 @@ from adamo_vh.action import (
     parse,
     tool_schema,
 )
-from adamo_vh.errors import InvalidActionError
+from adamo_vh.errors import ConfigError, InvalidActionError
 
 ACTIONS = (Look, Walk, Pick, Drop)
 json_values = st.recursive(
@@ -89,3 +92,73 @@ def test_refusals_name_the_fault_and_the_usage(
     with pytest.raises(InvalidActionError) as caught:
         parse(name, arguments, ACTIONS)
     assert part in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [True, False, "1_0", "0x10", "\u0663", "1,5", "", " ", "one", "+1", ".5", "1.", "01", "NaN",
+     "inf", "Infinity", float("inf"), float("-inf"), float("nan"), None, [1], {"x": 1}, "1 m", "true"],
+)  # fmt: skip
+def test_only_a_number_is_a_number(value: Any) -> None:
+    with pytest.raises(InvalidActionError, match=r"x\b") as caught:
+        parse("Walk", {"x": value, "y": 0, "z": 0}, ACTIONS)
+    assert caught.value.code == Code.BAD_ARGUMENT
+
+
+@pytest.mark.parametrize("value", ["1.5", " 1.5 ", "15e-1", "1.5E0", 1.5])
+def test_a_number_may_be_written_as_json_writes_it(value: Any) -> None:
+    assert parse("Walk", {"x": value, "y": 0, "z": 0}, ACTIONS) == Walk(1.5, 0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A place."""
+
+    x: float
+    exact: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """Follow a line."""
+
+    points: list[Point]
+    times: int | None = None
+    speed: float | str = 1.0
+
+
+def test_numbers_of_own_tools_are_held_to_the_same() -> None:
+    good = {"points": [{"x": "1", "exact": True}], "times": None, "speed": "fast"}
+    assert parse("Trace", good, [Trace]) == Trace([Point(1.0, True)], None, "fast")
+    for bad in (
+        {"points": [{"x": True}]},
+        {"points": [], "times": "1_0"},
+        {"points": [], "times": False},
+    ):
+        with pytest.raises(InvalidActionError):
+            parse("Trace", bad, [Trace])
+
+
+def test_a_tool_without_a_docstring_is_refused_in_words() -> None:
+    @dataclass(frozen=True, slots=True)
+    class Wave:
+        hand: str
+
+    with pytest.raises(ConfigError, match="Tool Wave has no description: give its class a doc"):
+        tool_schema(Wave)
+
+
+def test_descriptions_survive_a_python_without_docstrings() -> None:
+    code = (
+        "from adamo_vh.action import *; from adamo_vh.cognition.turns import Finish\n"
+        "for a in (Look, Walk, Pick, Drop, Inspect, Survey, Finish):\n"
+        "    print(tool_schema(a).description)"
+    )
+    said = [
+        subprocess.run(
+            [sys.executable, *flag, "-c", code], capture_output=True, text=True, check=True
+        )
+        for flag in ([], ["-OO"])
+    ]
+    assert said[0].stdout == said[1].stdout
+    assert said[1].stdout.startswith("Turn body and gaze to a point in the room")

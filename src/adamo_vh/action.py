@@ -7,8 +7,12 @@ action. A new tool is a new dataclass; what carries it out is paired with it in
 
 from __future__ import annotations
 
+import ast
 import inspect
-from collections.abc import Iterable, Mapping
+import math
+import re
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from functools import cache
@@ -16,7 +20,7 @@ from typing import Annotated, Any, ClassVar, Protocol
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
-from adamo_vh.errors import InvalidActionError
+from adamo_vh.errors import ConfigError, InvalidActionError
 
 _STRICT = ConfigDict(
     extra="forbid", coerce_numbers_to_str=True, str_strip_whitespace=True, str_max_length=100
@@ -185,8 +189,32 @@ def tool_schema(action_type: type) -> ToolSchema:
     schema.pop("description", None)
     for field in schema.get("properties", {}).values():
         field.pop("title", None)
-    description = inspect.cleandoc(action_type.__doc__ or "").split("\n\n")[0]
-    return ToolSchema(action_name(action_type), description.replace("\n", " "), schema)
+    return ToolSchema(action_name(action_type), _description(action_type), schema)
+
+
+def _description(action_type: type) -> str:
+    """The first paragraph of a class's docstring; out of its source where Python drops them.
+
+    Raises:
+        ConfigError: There is none.
+    """
+    name, doc = action_name(action_type), action_type.__doc__
+    if not doc or doc.startswith(f"{name}("):  # What a dataclass makes up for a missing one.
+        doc = _docstring_in_source(action_type)
+    if not doc:
+        raise ConfigError(
+            f"Tool {name} has no description: give its class a docstring, which is what a model "
+            "reads of it. Under `python -OO` the class must stand in a source file."
+        )
+    return inspect.cleandoc(doc).split("\n\n")[0].replace("\n", " ")
+
+
+def _docstring_in_source(action_type: type) -> str | None:
+    try:
+        (found,) = ast.parse(textwrap.dedent(inspect.getsource(action_type))).body
+    except (OSError, TypeError, SyntaxError, ValueError):
+        return None
+    return ast.get_docstring(found) if isinstance(found, ast.ClassDef) else None
 
 
 def parse(name: str, arguments: Mapping[str, Any] | None, actions: Iterable[type]) -> Any:
@@ -214,6 +242,9 @@ def parse(name: str, arguments: Mapping[str, Any] | None, actions: Iterable[type
         raise InvalidActionError(
             Code.BAD_ARGUMENT, f"the arguments are not a JSON object. Usage: {name}({signature})."
         )
+    schema = tool_schema(known[name]).parameters
+    if odd := next(_no_numbers(dict(arguments), schema, schema.get("$defs", {})), ""):
+        raise InvalidActionError(Code.BAD_ARGUMENT, f"{odd}. Usage: {name}({signature}).")
     try:
         return _codec(known[name]).validate_python(dict(arguments))
     except ValidationError as error:
@@ -222,6 +253,35 @@ def parse(name: str, arguments: Mapping[str, Any] | None, actions: Iterable[type
         raise InvalidActionError(
             Code.BAD_ARGUMENT, f"{where}: {first['msg']}. Usage: {name}({signature})."
         ) from None
+
+
+_NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
+"""A number as JSON writes it; as text it is understood too."""
+
+
+def _no_numbers(
+    value: Any, schema: Mapping[str, Any], definitions: Mapping[str, Any], where: str = ""
+) -> Iterator[str]:
+    """What stands where a number belongs and is none, though Python would take it for one."""
+    if "$ref" in schema:
+        schema = definitions.get(schema["$ref"].rpartition("/")[2], {})
+    options = [schema, *schema.get("anyOf", ())]
+    kinds = {option.get("type") for option in options}
+    if isinstance(value, Mapping):
+        for name, inner in schema.get("properties", {}).items():
+            path = f"{where}.{name}" if where else name
+            yield from _no_numbers(value.get(name), inner, definitions, path)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from _no_numbers(inner, schema.get("items", {}), definitions, where)
+    elif kinds & {"number", "integer"}:
+        if isinstance(value, bool) and "boolean" not in kinds:
+            yield f"{where}: {str(value).lower()} is no number"
+        elif isinstance(value, str) and "string" not in kinds:
+            if not _NUMBER.fullmatch(value.strip(" ")):
+                yield f"{where}: {value[:40]!r} is no number; write it like 1.5"
+        elif isinstance(value, float) and not math.isfinite(value):
+            yield f"{where}: {value} is no finite number"
 
 
 def arguments_of(action: Action) -> dict[str, Any]:

@@ -36,6 +36,8 @@ class LoopGuard:
         self._max_repeats = max_repeats
         self._seen: Counter[str] = Counter()
         self._idle = 0
+        self._unread: dict[str, str] = {}
+        """What was written as the arguments of a call, where it is no JSON object, by call id."""
 
     def notify(self, event: Event, frame: Frame | None = None) -> None:
         """Count a call with the state that it led to, or a reply that led to none."""
@@ -44,9 +46,14 @@ class LoopGuard:
             self._idle = 0
         if isinstance(event, Thought) and not event.reply.unreadable:
             self._idle += 1
+        if isinstance(event, Thought):
+            calls = event.reply.message.calls
+            self._unread = {call.id: call.raw for call in calls if call.arguments is None}
         if isinstance(event, Acted):
             self._idle = 0
             arguments = json.dumps(event.arguments, sort_keys=True, default=str)
+            if event.arguments is None:
+                arguments = self._unread.get(event.call_id, "")
             self._seen[f"{event.name} {arguments} {event.state_hash}"] += 1
 
     def stop(self) -> Stop | None:

@@ -7,12 +7,18 @@ else makes a tag or takes one apart.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from enum import StrEnum
 from typing import Protocol
 
-_QUOTES = "\"'`\u201c\u201d\u2018\u2019"
-"""Straight, back and curly quotes."""
+_DRESS = " \t\r\n\"'`\u201c\u201d\u2018\u2019[](){}<>*"
+"""Blanks, quotes, brackets and stars, which models put round a tag."""
+_WRITTEN = re.compile(r"(?P<name>.*?)(?P<gap>[ _-]?)(?P<number>#?)(?P<id>0|[1-9][0-9]{0,8})")
+_WHOLE = re.compile(r"(#?[0-9]{1,9})\.0{1,6}")
+_LONGEST = 200
+_ANY_OBJECT = frozenset({"object", "tag", "id"})
+"""Words that name every object alike, so that the number behind them tells all."""
 
 
 class Tagger(Protocol):
@@ -69,9 +75,11 @@ class Labeling(StrEnum):
     def resolve(self, text: str, known: Mapping[int, str]) -> int | None:
         """Find the object that a model means.
 
-        Case, white space around the tag and quotes do not matter. The bare id is understood under
-        both labelings, since instructions say "the object tagged as 34". Nothing is guessed: a
-        right id with a wrong class names no object, nor does a semantic tag under OPAQ.
+        Case, and quotes and brackets around the tag, do not matter; between class and number may
+        stand ``_``, ``-``, a blank or ``#``. The bare id is understood under both labelings, since
+        instructions say "the object tagged as 34"; so are ``#34``, ``34.0`` and ``object 34``.
+        Nothing is guessed: a right id with a wrong class names no object, nor does a semantic tag
+        under OPAQ.
 
         Args:
             text: The tag as the model wrote it.
@@ -80,11 +88,21 @@ class Labeling(StrEnum):
         Returns:
             The object's id, or None if the text names none of the known objects.
         """
-        wanted = text.strip().strip(_QUOTES).strip().casefold()
-        for object_id, class_name in known.items():
-            if wanted in (str(object_id), self.tag(object_id, class_name).casefold()):
-                return object_id
-        return None
+        wanted = text[:_LONGEST].strip(_DRESS)
+        wanted = whole[1] if (whole := _WHOLE.fullmatch(wanted)) else wanted
+        found = _WRITTEN.fullmatch(wanted)
+        if found is None or int(found["id"]) not in known:
+            return None
+        object_id = int(found["id"])
+        name = _folded(found["name"])
+        if not found["name"]:
+            return None if found["gap"] else object_id
+        fits = name in _ANY_OBJECT or (self is Labeling.SEM and name == _folded(known[object_id]))
+        return object_id if fits else None
+
+
+def _folded(name: str) -> str:
+    return re.sub(r"[ _-]", "", name.casefold())
 
 
 _DESCRIBED = {
