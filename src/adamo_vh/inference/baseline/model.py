@@ -52,9 +52,8 @@ class BaselineModel:
         """
         begin = time.perf_counter()
         prompt, manner = read_prompt(messages), manner_of(messages, tools)
-        step = decide(
-            prompt, understand(prompt.instruction, prompt.spoken_of), manner, self._reader
-        )
+        plan = understand(prompt.instruction, prompt.spoken_of, prompt.former)
+        step = decide(prompt, plan, manner, self._reader)
         if self._remark and not prompt.turns:
             step = replace(step, note=f"{self._remark} {step.note}")
         message = say(step, manner, prompt.instruction)

@@ -50,6 +50,8 @@ _RULES: tuple[tuple[str, str], ...] = (
      r"put \1 where it was"),
     (r"\breturn ((?:the |my |a )?(?!to\b|here\b|back\b)\w+)(?=\s*(?:$|[.!?;,]))",
      r"put \1 where it was"),
+    (r"\b(?:put|set|lay|place) (it|them|(?:the|a|my) [\w ]+?) down"
+     r"(?=\s*(?:$|[.!?;,]|please\b|and\b|then\b|again\b|now\b))", r"put down \1"),
     (r"\bswap (?:the )?place", "swap place"),
     (r"\b(?:that|it|what)'s\b", "that is"),
     (r"^\W*(?:your|the|my) (?:task|job|goal|instruction|mission)\b(?: is)?(?: to)?\s*:?", ""),
@@ -101,6 +103,11 @@ def rephrased(text: str) -> str:
     for pattern, better in _compiled():
         plain = pattern.sub(better, plain)
     return plain
+
+
+def with_lengths(text: str) -> str:
+    """Distances in the one form that the rest of the grammar knows: "1 m" as "@100"."""
+    return _LENGTH.sub(_length, text)
 
 
 def _count_word(match: re.Match[str]) -> str:

@@ -9,7 +9,7 @@ from functools import lru_cache
 from adamo_vh.inference.baseline.language.grammar import read_things, wishes
 from adamo_vh.inference.baseline.language.plan import Act, Plan
 from adamo_vh.inference.baseline.language.questions import read_question, read_statement
-from adamo_vh.inference.baseline.language.rephrasing import rephrased
+from adamo_vh.inference.baseline.language.rephrasing import with_lengths
 from adamo_vh.inference.baseline.language.spelling import known_words, spelled
 
 CAN = (
@@ -100,18 +100,21 @@ _COUNT_WORDS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "a": 1, "f
 
 
 @lru_cache(maxsize=256)
-def understand(instruction: str, before: tuple[str, ...] = ()) -> Plan:
+def understand(instruction: str, before: tuple[str, ...] = (), former: str = "") -> Plan:
     """Compile an instruction.
 
     Args:
         instruction: What the user wrote.
         before: Tags that were spoken of or handled before, the latest first.
+        former: The instruction before this one; "now the other one" goes on with it.
 
     Returns:
         The plan; if any part has no meaning, one that names this part and does nothing.
     """
     text = " ".join(instruction.lower().replace("\u2019", "'").split())
     plan = _read(text, before)
+    if plan.problem and former:
+        plan = _gone_on_with(former, text, before) or plan
     if plan.problem:
         better, slips = spelled(text)
         again = _read(better, before) if slips else plan
@@ -121,6 +124,17 @@ def understand(instruction: str, before: tuple[str, ...] = ()) -> Plan:
         words = ", ".join(f"'{word}' as '{meant}'" for word, meant in slips.items())
         plan = replace(plan, remarks=(*plan.remarks, f"I read {words}."))
     return plan
+
+
+def _gone_on_with(former: str, text: str, before: tuple[str, ...]) -> Plan | None:
+    """Read "and now the cup" as the former wish for another thing."""
+    begin = r"^(?:(?:and|now|then|also|next|what about|how about|the same for)\b[, ]*)+"
+    words = re.sub(begin, "", text).strip(" .!?")
+    things = read_things(re.sub(r"[, ]+(?:too|as well|please|also)$", "", words), before)
+    goals = wishes(former.lower(), ()).goals if things else ()
+    if not things or not goals:
+        return None
+    return Plan(tuple(replace(goals[-1], target=thing) for thing in things))
 
 
 def _with_language(problem: str, text: str) -> str:
@@ -277,18 +291,13 @@ def _act(plain: str, before: tuple[str, ...]) -> Plan | None:
         return Plan(acts=(Act("walk", direction="start", text="back"),))
     if match := _LOOK_WAY.fullmatch(plain):
         return Plan(acts=(_turn(plain, match[1]),))
-    lengths = (rephrased(plain).strip(), _with_lengths(plain))
-    if match := next(filter(None, map(_WALK_WAY.fullmatch, lengths)), None):
+    if match := _WALK_WAY.fullmatch(with_lengths(plain)):
         return Plan(acts=(_stride(match),))
     if match := _LOOK.fullmatch(plain):
         return _towards("look", match[1], before)
     if match := _WALK_TO.fullmatch(plain):
         return _towards("walk", match[1], before)
     return None
-
-
-def _with_lengths(plain: str) -> str:
-    return re.sub(r" @(?=left|right|front|back)", " ", rephrased(plain)).strip()
 
 
 def _turn(plain: str, way: str) -> Act:

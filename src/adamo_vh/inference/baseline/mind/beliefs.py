@@ -27,6 +27,7 @@ from adamo_vh.inference.baseline.sight.printed import WordReader
 _NEVER_M = 99.0
 OF_CONDITION = 99
 """The condition counts as a further question, with this number."""
+_LIKE_WOOD = ("orange", "brown", "yellow")
 _CLOSER = 0.9
 """A view from less than this share of the former distance replaces what was believed."""
 
@@ -249,8 +250,10 @@ def _see(prompt: Prompt, plan: Plan, memory: Memory, looked_at: Mapping[str, Sig
         for tag, nearer in closer.items():
             sight = looked_at.get(tag)
             words = colour_words(sight) if sight else ""
-            clear = prototypes()[likeliest(beliefs[tag])].transparent
-            if words and not clear and (nearer or tag not in memory.looks):
+            kind = prototypes()[likeliest(beliefs[tag])]
+            # Around long things much of the box shows the wood behind them.
+            untold = kind.transparent or ("long" in kind.shape and words in _LIKE_WOOD)
+            if words and not untold and (nearer or tag not in memory.looks):
                 memory.looks[tag] = words
     everything = tuple(memory.things.values())
     for slot, description in open_slots(plan, memory):

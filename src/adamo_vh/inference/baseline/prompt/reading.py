@@ -126,6 +126,8 @@ class Prompt:
     """The own turns since the instruction, as far as they are in the prompt."""
     earlier: tuple[Turn, ...] = ()
     """Those before it: of former instructions."""
+    former: str = ""
+    """The instruction before this one."""
     began: Body | None = None
     """The body when the instruction was given, where a text still tells it."""
     event: Event | None = None
@@ -174,6 +176,7 @@ class _Reader:
     fresh: bool = True
     viewed: int = 0
     earlier: list[Turn] = field(default_factory=list)
+    former: str = ""
     began: Body | None = None
     pinned: frozenset[str] = frozenset()
 
@@ -201,7 +204,7 @@ class _Reader:
         elif self.turns and first.startswith(_NEW_VIEW):
             self._view(images)
         elif not self.instruction or images or left_out or len(texts) > 1:
-            self.instruction = first.strip()
+            self.former, self.instruction = self.instruction, first.strip()
             self.earlier += self.turns
             self.turns.clear()
             self.state.turn = 0
@@ -271,6 +274,7 @@ def read_prompt(messages: Sequence[Message]) -> Prompt:
         frame=reader.frame,
         turns=tuple(reader.turns),
         earlier=tuple(reader.earlier),
+        former=reader.former,
         began=reader.began if not reader.turns or state.views else None,
         event=tried[-1] if tried else None,
         fresh=reader.fresh,

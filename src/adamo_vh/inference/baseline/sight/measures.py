@@ -36,9 +36,10 @@ _WHITE_FROM = (145, 165)
 _SHADE = 0.68
 """Brightness of white in the shade, as a share of white in the light."""
 _BROWN_BELOW = 140
-_ENOUGH_PX = 150
+_ENOUGH_PX = 200
 _SEE_THROUGH = 0.5
-_MAIN_SHARE = 0.45
+_RIVAL_SHARE = 0.2
+_MAIN_SHARE = 0.5
 """Share from which on a colour is said to be that of a thing."""
 _ON_EVERYTHING = 0.2
 """Share of black, grey and white that shadows and highlights make."""
@@ -137,4 +138,7 @@ def colour_words(sight: Sight) -> str:
         for name, share in sight.colours.items()
     }
     ordered = sorted(shares, key=lambda name: (-shares[name], name))
-    return ordered[0] if ordered and shares[ordered[0]] >= _MAIN_SHARE else ""
+    if not ordered or shares[ordered[0]] < _MAIN_SHARE:
+        return ""
+    rival = shares[ordered[1]] if len(ordered) > 1 else 0.0
+    return ordered[0] if rival < _RIVAL_SHARE else ""
