@@ -74,7 +74,7 @@ def read(note: str) -> Entry:
     if not found:
         return Entry()
     number, whole, items = found[-1]
-    return Entry(int(number), bool(whole), (items or "").split("; "))
+    return Entry(int(number), bool(whole), items.split("; ") if items else [])
 
 
 def apply(entry: Entry, memory: Memory, told: Collection[str] = ()) -> None:

@@ -36,7 +36,7 @@ _WHITE_FROM = (145, 165)
 _SHADE = 0.68
 """Brightness of white in the shade, as a share of white in the light."""
 _BROWN_BELOW = 140
-_ENOUGH_PX = 200
+_ENOUGH_PX = 150
 _SEE_THROUGH = 0.5
 _RIVAL_SHARE = 0.2
 _MAIN_SHARE = 0.5
