@@ -8,12 +8,14 @@ PYTEST_FLAGS ?=
 DEMO := runs/demo
 
 export VENV
+# Silences a notice about the future of mkdocs.
+export NO_MKDOCS_2_WARNING = 1
 ifdef PYTHON
 export PYTHON
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all check format bench venv clean
+.PHONY: help demo test test-all check format docs bench venv clean
 # Two set-ups at once would write to the same environment.
 .NOTPARALLEL:
 
@@ -33,10 +35,14 @@ test: $(VENV)/.dev $(VENV)/.gl ## Run the tests, without the slow ones
 test-all: $(VENV)/.dev $(VENV)/.gl ## Run all tests
 	@ADAMO_VH_EXPLORE=1 $(BIN)/pytest -n $(WORKERS) $(PYTEST_FLAGS)
 
-check: $(VENV)/.dev ## Formatting, lint, types and layers, as CI does
-	@failed=; for gate in "ruff format --check ." "ruff check ." "mypy" "lint-imports --no-logo"; do \
+check: $(VENV)/.dev ## Formatting, lint, types, layers and docs, as CI does
+	@failed=; for gate in "ruff format --check ." "ruff check ." "mypy" "lint-imports --no-logo" "mkdocs build --quiet"; do \
 		echo "==> $$gate"; $(BIN)/$$gate || failed="$$failed [$$gate]"; \
 	done; [ -z "$$failed" ] || { echo "==> Failed:$$failed"; exit 1; }
+
+docs: $(VENV)/.dev ## Build the documentation as a site, in .cache/site
+	@$(BIN)/mkdocs build --quiet
+	@printf "Open in a browser: %s\n" "$(CURDIR)/.cache/site/index.html"
 
 format: $(VENV)/.dev ## Put the code in order: formatting, imports, safe fixes
 	@$(BIN)/ruff check --fix .
