@@ -1,0 +1,33 @@
+"""The examples run as they stand, each by itself, and say what they promise."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+SAYS = {
+    "00_first_episode.py": ["completion:  1.0 strict: 1.0", "the same"],
+    "01_own_loop.py": ["Done: walked", "on the floor", "Refused: no object tagged 'Plate_999'"],
+    "02_own_model.py": ["answered", "is in your hand"],
+    "03_own_tool.py": ["Done: Cup_45 is", "m away"],
+    "04_own_scene.py": ["answered - Done:", "on the floor"],
+    "05_own_task.py": ["completion: 1.0 strict: 1.0", "45 on floor - yes", "34 near 57 - yes"],
+    "06_own_labeling.py": ["cup-45 is in your hand", "answered - I hold it."],
+    "07_own_engine.py": ["the body says:", "answered - The red block lies beside the yellow one."],
+}
+
+
+def test_every_example_is_run() -> None:
+    assert sorted(SAYS) == sorted(path.name for path in EXAMPLES.glob("*.py"))
+
+
+@pytest.mark.parametrize("name", SAYS)
+def test_an_example_does_what_it_says(name: str, tmp_path: Path) -> None:
+    command = [sys.executable, str(EXAMPLES / name)]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert run.returncode == 0, run.stderr
+    assert [words for words in SAYS[name] if words not in run.stdout] == [], run.stdout
