@@ -87,7 +87,8 @@ def moved_inside(said: Feedback, asked: Vec3, taken: Vec3) -> Feedback:
 
 
 def _stopped(report: BodyReport) -> Feedback:
-    return _feedback(report, f"stopped on request before the end, at {report.point}")
+    where = f", at {report.point}" if report.point is not None else ""
+    return _feedback(report, f"stopped on request before the end{where}")
 
 
 def _closer(report: BodyReport) -> str:
