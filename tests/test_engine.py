@@ -17,7 +17,7 @@ from adamo_vh.engine import (
     object_support,
     supporting_object,
 )
-from adamo_vh.geometry import Box, Quaternion, Solid, Vec3, gaps
+from adamo_vh.geometry import Array, Box, Quaternion, Solid, Vec3, gaps
 from adamo_vh.observation import BodyState
 
 SCENE = SceneInfo("s", -3.0, -5.0, 3.0, 3.0, 3.2, ())
@@ -39,8 +39,10 @@ def with_cup(cup: ObjectState) -> WorldState:
     return replace(STATE, objects=(KEY, cup))
 
 
-def with_box(**changes: object) -> WorldState:
-    return with_cup(replace(CUP, box=replace(CUP.box, **changes)))
+def with_box(
+    center: Vec3 = CUP.box.center, orientation: Quaternion = CUP.box.orientation
+) -> WorldState:
+    return with_cup(replace(CUP, box=replace(CUP.box, center=center, orientation=orientation)))
 
 
 OTHERWISE = {
@@ -112,7 +114,7 @@ sizes = st.floats(0.01, 2.0)
 solids = st.builds(Solid, metres, metres, sizes, sizes, angles, st.just(0.0), st.just(1.0))
 
 
-def outline(solid: Solid) -> np.ndarray:
+def outline(solid: Solid) -> Array:
     """Points along the edges of a rectangle."""
     t = np.linspace(-1, 1, 21)
     one = np.ones_like(t)
@@ -121,7 +123,7 @@ def outline(solid: Solid) -> np.ndarray:
     )
     local = local * (solid.half_x, solid.half_y)
     cos, sin = math.cos(solid.yaw_rad), math.sin(solid.yaw_rad)
-    return local @ np.array([[cos, sin], [-sin, cos]]) + (solid.x, solid.y)
+    return np.asarray(local @ np.array([[cos, sin], [-sin, cos]]) + (solid.x, solid.y))
 
 
 @given(solids)
