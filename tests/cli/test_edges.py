@@ -70,7 +70,7 @@ def test_a_score_is_printed_though_the_result_cannot_be_written(tmp_path: Path) 
     )
     assert done.code == 0, done.err
     assert json.loads(done.out)["completion"] == 1.0
-    assert "the result is not kept" in done.err
+    assert "the result is not written" in done.err
 
 
 def test_a_script_and_a_scene_with_a_byte_order_mark_are_read(tmp_path: Path) -> None:
