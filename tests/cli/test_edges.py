@@ -185,6 +185,8 @@ def test_python_without_docstrings_and_assertions_does_the_same(tmp_path: Path) 
     assert "completion 1.00" in done.out
 
 
+PAPER = ("--profile", "paper")
+"""An answer is an answer, without a call of Finish."""
 CHAT = b"\n\n  \n/help\n/nope\nTake the key\n\nquit\nnever heard\n"
 
 
@@ -198,7 +200,7 @@ def test_a_chat_is_left_in_the_usual_ways(leave: bytes, tmp_path: Path) -> None:
 
 def test_a_chat_knows_its_own_commands_and_passes_the_rest_on(tmp_path: Path) -> None:
     model = script(tmp_path, {"note": "Which key?"})
-    done = adamo("chat", "--model", model, "--out", "a", cwd=tmp_path, said=CHAT)
+    done = adamo("chat", *PAPER, "--model", model, "--out", "a", cwd=tmp_path, said=CHAT)
     assert done.code == 0, done.err
     assert "There is no /nope" in done.out and "stop what is being done" in done.out
     assert "agent       Which key?" in done.out
@@ -208,7 +210,9 @@ def test_a_chat_knows_its_own_commands_and_passes_the_rest_on(tmp_path: Path) ->
 
 def test_a_chat_says_so_if_a_line_is_no_text(tmp_path: Path) -> None:
     model = script(tmp_path, {"note": "Yes."})
-    done = adamo("chat", "--model", model, "--out", "a", cwd=tmp_path, said=b"caf\xe9\nhi\n")
+    done = adamo(
+        "chat", *PAPER, "--model", model, "--out", "a", cwd=tmp_path, said=b"caf\xe9\nhi\n"
+    )
     assert done.code == 2
     assert "not UTF-8 text and is left out" in done.out
     assert "agent       Yes." in done.out, "the next line is heard"
