@@ -38,7 +38,8 @@ ANSWERS = {
     Rung.REACT: "Final Answer: Done.",
 }
 every_way = pytest.mark.parametrize(
-    ("dialect", "rung"), [(d, rung) for d in DIALECTS for rung in ANSWERS], ids=str
+    ("dialect", "rung"),
+    [pytest.param(d, rung, id=f"{d.name}-{rung}") for d in DIALECTS for rung in ANSWERS],
 )
 
 
