@@ -15,6 +15,8 @@ from adamo_vh.inference.baseline import BaselineModel
 from adamo_vh.inference.baseline.mind.notes import Entry, read
 
 _SMALL = (640, 360)
+_LARGER = (1280, 720)
+"""For what depends on colours: at the small size a cup far off is a few dozen pixels."""
 _SAMPLE = (1, 7, 13, 15, 18, 23, 24, 35, 41, 42, 49, 57, 61)
 """Lines of the everyday instructions for every run; `make test-all` plays all of them."""
 
@@ -26,9 +28,9 @@ def world(request):
     made.close()
 
 
-def _play(world, text: str, labeling: str = "sem", profile: str = "paper") -> Outcome:
+def _play(world, text: str, resolution: tuple[int, int] = _LARGER) -> Outcome:
     scene, engine = world
-    return played(Case(text, "", scene, labeling, profile), engine, "baseline", _SMALL)
+    return played(Case(text, "", scene, "sem", "paper"), engine, "baseline", resolution)
 
 
 def test_generated_instructions_get_no_false_claim(world):
@@ -65,7 +67,8 @@ def test_most_everyday_instructions_are_carried_out(world):
 
 def _everyday(world, line: int, must: bool = True) -> bool:
     text, condition = list(everyday.lines(world[0]))[line - 1]
-    outcome = _play(world, text)
+    coloured = "looks" in condition or "orange" in condition
+    outcome = _play(world, text, _LARGER if coloured else _SMALL)
     met = holds(condition, outcome)
     assert not false_claims(outcome, met if "refuses" not in condition else None)
     assert met or not must, outcome.answer

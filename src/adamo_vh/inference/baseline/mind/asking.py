@@ -46,7 +46,8 @@ def ready(question: Question, index: int, memory: Memory, stage: Stage) -> bool:
     if question.ask is Ask.COLOUR:
         return close or found[0] in memory.looks
     if question.quality and question.quality.by_looks:
-        return close or _quality(question, index, found[0], memory) is not None
+        unsure = _quality(question, index, found[0], memory) is None
+        return close or not (unsure or (question.quality.colours and found[0] not in memory.looks))
     if question.place and question.place.anchor:
         return _anchor(question, index, memory) is not None
     return True
