@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -9,19 +10,29 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adamo_vh.action import Drop, Inspect, Look, Pick, Survey, Walk
+from adamo_vh import run_episode
+from adamo_vh.action import Drop, Inspect, Look, Pick, Survey, ToolSchema, Walk
 from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS
 from adamo_vh.benchmark.conditions import NEAR_M
 from adamo_vh.cognition.instructions import system_prompt
 from adamo_vh.cognition.profile import PAPER, PROFILES, SWITCHES, Profile, StateText, profile
 from adamo_vh.cognition.turns import offered, read_turn
 from adamo_vh.errors import ConfigError
-from adamo_vh.inference.messages import AIMessage, ToolCall
-from adamo_vh.inference.model import Reply
+from adamo_vh.inference.messages import (
+    AIMessage,
+    HumanMessage,
+    ImagePart,
+    Message,
+    ToolCall,
+    ToolMessage,
+)
+from adamo_vh.inference.model import ModelInfo, Reply, Rung, Sampling
 from adamo_vh.inference.players.scripted import ScriptedModel
+from adamo_vh.inference.remote.capabilities import Capabilities, Support, ToolSupport
 from adamo_vh.perception import Labeling
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.turn import FINISH
+from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.scenes import load_scene
 from adamo_vh.session.minds import fitting
 
@@ -31,7 +42,7 @@ EVERY_SWITCH: dict[str, tuple[Any, ...]] = {
     "state": tuple(StateText),
     "terse": (True, False),
     "fresh_view": (True, False),
-    "pictures": (0, 1, 2),
+    "pictures": (0, 1, 2, "none"),
     "pictures_in_results": (True, False),
     "closeups": (True, False),
     "note_argument": (True, False),
@@ -52,6 +63,14 @@ def test_switches_are_read_and_named() -> None:
     assert (chosen.plan, chosen.fresh_view, chosen.state) == (1, False, StateText.LAST)
     assert str(chosen) == "lean (state=last, fresh_view=off, plan=1)"
     assert str(profile("paper", {"pictures": 2})) == "paper (pictures=2)"
+    assert str(profile("paper", {"pictures": "none"})) == "paper (pictures=none)"
+    assert str(profile("paper", {"state": "none"})) == "paper (state=none)"
+
+
+def test_without_pictures_there_are_no_close_ups_either() -> None:
+    chosen = profile("lean", {"pictures": "none"})
+    assert str(chosen) == "lean (pictures=none, closeups=off, min_confidence=0.0)"
+    assert chosen == LEAN.without_pictures()
 
 
 def test_a_switch_that_confidence_rests_on_takes_it_along() -> None:
@@ -67,7 +86,11 @@ def test_a_switch_that_confidence_rests_on_takes_it_along() -> None:
         ("lean", {"plan": "many"}, "a number"),
         ("lean", {"plan": 0}, "at least 1"),
         ("lean", {"closeups": "maybe"}, "on or off"),
-        ("paper", {"state": "middle"}, "first, last, changes"),
+        ("paper", {"state": "middle"}, "first, last, changes, none"),
+        ("paper", {"pictures": "some"}, "a number or none"),
+        ("paper", {"pictures": -1}, "at least 0, or none"),
+        ("paper", {"pictures": "none", "state": "none"}, "would see nothing"),
+        ("lean", {"pictures": "none", "closeups": "on"}, "closeups are pictures"),
         ("paper", {"min_confidence": 0.5}, "needs note_argument"),
     ],
 )
@@ -80,8 +103,17 @@ def test_every_switch_is_covered_here() -> None:
     assert set(EVERY_SWITCH) == set(SWITCHES)
 
 
-profiles = st.fixed_dictionaries({k: st.sampled_from(v) for k, v in EVERY_SWITCH.items()}).map(
-    lambda switches: Profile("own", **switches)
+def is_possible(switches: dict[str, Any]) -> bool:
+    """Whether something is shown, and close-ups only where there are pictures."""
+    if switches["pictures"] != "none":
+        return True
+    return switches["state"] is not StateText.NONE and not switches["closeups"]
+
+
+profiles = (
+    st.fixed_dictionaries({k: st.sampled_from(v) for k, v in EVERY_SWITCH.items()})
+    .filter(is_possible)
+    .map(lambda switches: Profile("own", **switches))
 )
 
 
@@ -97,8 +129,16 @@ def test_the_prompt_says_what_is_on_and_nothing_else(chosen: Profile) -> None:
     assert ("no tool call. That ends" in text) != chosen.finish_check
     assert ("Every tool takes a note" in text) == chosen.note_argument
     assert ("short reasoning note" in text) != chosen.note_argument
-    assert ("come only after Look" in text) != chosen.fresh_view
-    assert ("symbolic state" in text) == (chosen.state is not StateText.CHANGES)
+    assert ("only after Look" in text) != chosen.fresh_view
+    whole = chosen.state in (StateText.FIRST, StateText.LAST)
+    assert ("symbolic state" in text.lower()) == whole
+    assert ("view as text" in text) == (chosen.state is not StateText.NONE)
+    assert ("coordinates you are told" in text) == (chosen.state is not StateText.NONE)
+    assert (" list" in text) == (chosen.state is not StateText.NONE)
+    assert ("frame from your eyes" in text) == chosen.has_pictures
+    assert ("You get no pictures" in text) != chosen.has_pictures
+    if not chosen.has_pictures:
+        assert "new frame" not in text and "latest picture" not in text
     assert "\n\n\n" not in text
     assert "{" not in text
 
@@ -155,3 +195,64 @@ def test_without_the_tools_for_close_ups_there_are_none() -> None:
     player = ScriptedModel("s", ())
     assert fitting(LEAN, player, PAPER_TOOLS) == profile("lean", {"closeups": False})
     assert fitting(LEAN, player, LEAN_TOOLS) == fitting(LEAN, player) == LEAN
+
+
+class Blind(ScriptedModel):
+    """A model that a probe found to see no pictures."""
+
+    sight = Support.NO
+
+    @property
+    def info(self) -> ModelInfo:
+        found = Capabilities(
+            "openai:m", Rung.NATIVE, ToolSupport.NATIVE, Support.YES, self.sight, Support.UNTESTED
+        )
+        return replace(super().info, capabilities=found)
+
+
+def test_a_model_that_sees_no_pictures_is_shown_none() -> None:
+    blind = Blind("b", ())
+    assert fitting(LEAN, blind) == profile("lean", {"pictures": "none"})
+    assert fitting(PAPER, blind) == profile("paper", {"pictures": "none"})
+    with pytest.raises(ConfigError, match="leave state=none out"):
+        fitting(profile("paper", {"state": "none"}), blind)
+    blind.sight = Support.UNKNOWN
+    assert fitting(PAPER, blind) == PAPER
+
+
+@pytest.mark.parametrize("name", ["paper", "lean"])
+@pytest.mark.parametrize(
+    ("switches", "sees", "reads"),
+    [({"pictures": "none"}, False, True), ({"state": "none"}, True, False), ({}, True, True)],
+)
+def test_an_episode_shows_what_is_on_alone(
+    name: str, switches: dict[str, str], sees: bool, reads: bool, engine: BuiltinEngine
+) -> None:
+    prompts: list[Sequence[Message]] = []
+
+    class Listener(ScriptedModel):
+        def complete(
+            self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+        ) -> Reply:
+            prompts.append(messages)
+            return super().complete(messages, tools, sampling)
+
+    look = ToolCall("a", "Look", {"x": 0.3, "y": -0.6, "z": 0.8})
+    pick = ToolCall("b", "Pick", {"object": "57"})
+    run_episode(
+        "Pick object 57.",
+        model=Listener("s", [AIMessage("n", (look,)), AIMessage("n", (pick,)), AIMessage("Done.")]),
+        engine=engine,
+        resolution=(640, 360),
+        profile=name,
+        switches=switches,
+    )
+    parts = [part for m in prompts[-1] if isinstance(m, HumanMessage) for part in m.parts]
+    images = [m.images for m in prompts[-1] if isinstance(m, ToolMessage)]
+    assert (any(isinstance(part, ImagePart) for part in parts) or any(images)) == sees
+    words = "\n".join(m.text for m in prompts[-1])
+    assert ("cm3" in words) == reads
+    assert ("P0" in words.partition("# How you act")[2]) == reads
+    assert ("] px" in words) == (sees and reads and name == "paper")
+    if not sees:
+        assert "picture" not in words.replace("You get no pictures", "").lower()

@@ -9,6 +9,7 @@ import pytest
 from adamo_vh.action import Drop, Look, Pick, Walk
 from adamo_vh.benchmark.conditions import NEAR_M
 from adamo_vh.cognition.instructions import system_prompt
+from adamo_vh.cognition.profile import profile
 from adamo_vh.cognition.prompts import render
 from adamo_vh.errors import ConfigError
 from adamo_vh.perception import Labeling
@@ -22,6 +23,18 @@ ACTIONS = (Look, Walk, Pick, Drop)
 def test_the_system_prompt_is_as_agreed(labeling: Labeling) -> None:
     rendered = system_prompt(load_scene("s1").info(), labeling, ACTIONS, NEAR_M)
     golden = GOLDEN / f"system_s1_{labeling}.md"
+    assert rendered + "\n" == golden.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("switch", "labeling"), [("pictures", Labeling.OPAQ), ("state", Labeling.SEM)]
+)
+def test_the_system_prompt_without_pictures_or_state_is_as_agreed(
+    switch: str, labeling: Labeling
+) -> None:
+    chosen = profile("paper", {switch: "none"})
+    rendered = system_prompt(load_scene("s1").info(), labeling, ACTIONS, NEAR_M, chosen)
+    golden = GOLDEN / f"system_s1_no_{switch}.md"
     assert rendered + "\n" == golden.read_text(encoding="utf-8")
 
 

@@ -21,7 +21,7 @@ from adamo_vh.inference.remote.capabilities import (
 )
 from adamo_vh.session.minds import model_of
 
-_SIGHT_FIX = "use a model that sees; without pictures it has the symbolic text alone"
+_SIGHT_FIX = "it is shown none (pictures=none) and has the symbolic text alone"
 _OWN_SIGHT_FIX = f"start llama-server with --mmproj FILE; else {_SIGHT_FIX}"
 _TOOLS_FIX = "none is needed, it is asked another way"
 _OWN_TOOLS_FIX = (

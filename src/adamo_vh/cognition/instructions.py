@@ -8,7 +8,7 @@ from adamo_vh.action import tool_schema
 from adamo_vh.cognition.profile import PAPER, SWITCHES, Profile
 from adamo_vh.cognition.prompts import render
 from adamo_vh.engine import SceneInfo
-from adamo_vh.perception import Tagger
+from adamo_vh.perception import Labeling, Tagger
 
 
 def system_prompt(
@@ -38,7 +38,14 @@ def system_prompt(
         y_max=f"{scene.y_max:g}",
         corner_m=f"{corners[0].x_max - corners[0].x_min:g}" if corners else "",
         near_m=f"{near_m:g}",
-        labeling=f"- {labeling.described}",
+        labeling=f"- {_described(labeling, profile)}",
         **switches,
         tools=", ".join(f"{s.name}({', '.join(s.parameters['properties'])})" for s in schemas),
     )
+
+
+def _described(labeling: Tagger, profile: Profile) -> str:
+    """What the model is told about tags: nothing of looks where there are none."""
+    if labeling is Labeling.OPAQ and not profile.has_pictures:
+        return "A tag is a number that says nothing about the object."
+    return labeling.described

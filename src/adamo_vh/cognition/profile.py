@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
-from typing import Any
+from typing import Any, Literal
 
 from adamo_vh.errors import ConfigError
 
@@ -27,6 +27,12 @@ class StateText(StrEnum):
     """The whole state, always the latest, at the end: the prompt before it only grows."""
     CHANGES = "changes"
     """With each result only what changed; all that was said before stays where it was."""
+    NONE = "none"
+    """No state in words: the model has the pictures and what feedback says."""
+
+
+NO_PICTURES: Literal["none"] = "none"
+"""The value of `pictures` that leaves all of them out, for models that read text alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +47,9 @@ class Profile:
     reference points on walls and above the hand's reach, tools with names and types alone."""
     fresh_view: bool = False
     """A new view after every turn that changed what is seen; otherwise after Look only."""
-    pictures: int = 0
-    """Only the pictures of the last so many views stay in the prompt; 0 keeps all within k."""
+    pictures: int | Literal["none"] = 0
+    """Only the pictures of the last so many views stay in the prompt; 0 keeps all within k,
+    "none" shows none at all."""
     pictures_in_results: bool = False
     """Views come inside the tool's result; otherwise as human messages after it."""
     closeups: bool = False
@@ -62,15 +69,37 @@ class Profile:
 
     def __post_init__(self) -> None:
         """Refuse switches that make no sense together."""
-        if self.pictures < 0 or self.plan < 1 or not 0 <= self.min_confidence <= 1:
+        count = 0 if isinstance(self.pictures, str) else self.pictures
+        if count < 0 or self.plan < 1 or not 0 <= self.min_confidence <= 1:
             raise ConfigError(
-                "pictures is at least 0, plan at least 1, and min_confidence from 0 to 1."
+                "pictures is at least 0, or none; plan is at least 1, and min_confidence from 0 "
+                "to 1."
             )
+        if not self.has_pictures and self.state is StateText.NONE:
+            raise ConfigError(
+                "With pictures=none and state=none the model would see nothing: leave one of "
+                "them out."
+            )
+        if not self.has_pictures and self.closeups:
+            raise ConfigError("closeups are pictures: with pictures=none, set closeups=off.")
         if self.min_confidence and not (self.note_argument and self.closeups):
             raise ConfigError(
                 "min_confidence needs note_argument (which asks for a confidence) and closeups: "
                 "turn them on, or set min_confidence=0."
             )
+
+    @property
+    def has_pictures(self) -> bool:
+        """Whether the model is shown pictures at all."""
+        return self.pictures != NO_PICTURES
+
+    def without_pictures(self) -> Profile:
+        """The same for a model that sees none.
+
+        Raises:
+            ConfigError: Pictures are all that it is told by.
+        """
+        return replace(self, pictures=NO_PICTURES, closeups=False, min_confidence=0.0)
 
     def __str__(self) -> str:
         """The name, and what differs from what the name stands for."""
@@ -121,6 +150,8 @@ def profile(name: str, switches: Mapping[str, Any] | None = None) -> Profile:
     if unknown := sorted(chosen.keys() - set(SWITCHES)):
         raise ConfigError(f"There is no switch {unknown[0]!r}. Switches: {', '.join(SWITCHES)}.")
     values = {key: _read(key, value, getattr(start, key)) for key, value in chosen.items()}
+    if values.get("pictures") == NO_PICTURES:
+        values.setdefault("closeups", False)
     # Without a note there is no confidence, and without close-ups nothing that it could lead to.
     if not (values.get("note_argument", True) and values.get("closeups", True)):
         values.setdefault("min_confidence", 0.0)
@@ -129,12 +160,16 @@ def profile(name: str, switches: Mapping[str, Any] | None = None) -> Profile:
 
 def _read(switch: str, value: Any, usual: Any) -> Any:
     text = str(value).strip().lower()
+    if switch == "pictures" and text == NO_PICTURES:
+        return NO_PICTURES
     try:
         if isinstance(usual, bool):
             return {**dict.fromkeys(_ON, True), **dict.fromkeys(_OFF, False)}[text]
         return type(usual)(text)
     except (KeyError, ValueError):
         offer = "on or off" if isinstance(usual, bool) else "a number"
+        if switch == "pictures":
+            offer = "a number or none"
         if isinstance(usual, StateText):
             offer = ", ".join(StateText)
         raise ConfigError(f"Switch {switch}: {value!r} is not understood; use {offer}.") from None

@@ -16,11 +16,13 @@ class Wording:
 
     form: TextForm = TextForm.FULL
     terse: bool = False
+    boxes: bool = True
+    """Whether there is a frame for the boxes of objects to be in."""
 
     def objects(self, objects: Iterable[ObservedObject]) -> str:
         """One line for each object, with its box in the frame where the form has it."""
         if not self.terse:
-            return object_lines(objects, self.form)
+            return object_lines(objects, self.form if self.boxes else TextForm.PAPER)
         return "\n".join(map(self.lasting, objects)) or NONE
 
     def lasting(self, item: ObservedObject) -> str:
@@ -33,7 +35,7 @@ class Wording:
         """An object as it is seen now."""
         if self.terse:
             return item.short or item.tag
-        if self.form is TextForm.PAPER:
+        if self.form is TextForm.PAPER or not self.boxes:
             return item.tag
         return f"{item.tag} [{', '.join(map(str, item.box_px))}]"
 
@@ -53,6 +55,7 @@ def whole_state(view: Observation, agent: AgentState, wording: Wording) -> str:
     return render_from(
         "adamo_vh.perception.prompts",
         "symbolic_state",
+        view="frame" if wording.boxes else "view",
         objects=wording.objects(view.objects),
         points=wording.points(view.points),
         agent=wording.agent(agent),

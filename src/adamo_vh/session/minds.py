@@ -10,12 +10,14 @@ from pathlib import Path
 from adamo_vh.action_server.tools import INSPECT, SURVEY, Tool
 from adamo_vh.cognition.profile import PAPER, Profile, StateText
 from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import Model, ModelKind, Reply, Rung
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.inference.players.checked import checked
 from adamo_vh.inference.players.resumed import resumed
 from adamo_vh.inference.players.scripted import ScriptedModel, load_script
 from adamo_vh.inference.registry import create_model
+from adamo_vh.inference.remote.capabilities import Support
 from adamo_vh.record.run_folder import SCRIPT
 from adamo_vh.record.trajectory import Trajectory, read_trajectory
 
@@ -70,9 +72,20 @@ def model_of(
 def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None) -> Profile:
     """The profile that a model can follow, with the tools that it is given.
 
-    One that is asked for steps as text gives one a turn, and without the tools for close-ups there
-    are none.
+    One that sees no pictures is shown none, one that is asked for steps as text gives one a turn,
+    and without the tools for close-ups there are none.
+
+    Raises:
+        ConfigError: The model sees no pictures, and the profile has nothing but pictures.
     """
+    known = model.info.capabilities
+    if known is not None and known.pictures in (Support.NO, Support.REFUSED):
+        if profile.state is StateText.NONE:
+            raise ConfigError(
+                f"{model.info.name} sees no pictures, and state=none tells it nothing in words: "
+                "leave state=none out."
+            )
+        profile = profile.without_pictures()
     if model.info.rung in (Rung.SCHEMA, Rung.REACT):
         profile = replace(profile, plan=1)
     if tools is not None and not {INSPECT, SURVEY} <= set(tools):

@@ -72,7 +72,7 @@ class ShortTermMemory:
             raise ConfigError(f"k is {k}; the memory keeps at least 1 step.")
         self._instructions = instructions
         self._profile = profile or PAPER
-        self._wording = Wording(form, self._profile.terse)
+        self._wording = Wording(form, self._profile.terse, self._profile.has_pictures)
         self._pinned: list[Instruction] = []
         self._k = k
         self._entries: list[Instruction | Exchange] = []
@@ -106,8 +106,8 @@ class ShortTermMemory:
 
     @property
     def state_text(self) -> str:
-        """The whole symbolic state now."""
-        if self._view is None or self._agent is None:
+        """The whole symbolic state now; empty if the model is told none."""
+        if self._view is None or self._agent is None or self._profile.state is StateText.NONE:
             return ""
         return whole_state(self._view, self._agent, self._wording)
 
@@ -140,7 +140,8 @@ class _Writer:
         self._profile = profile
         self._wording = wording
         self._told = Told(wording)
-        kept = profile.pictures
+        # Without pictures, what is in view is text and stays where it was said.
+        kept = 0 if isinstance(profile.pictures, str) else profile.pictures
         # By identity: two views may look the same and still be two. The last 0 are all of them.
         views = [id(view) for view in _views(entries)]
         shown = [id(frame) for frame in _closeups(entries)]
@@ -154,7 +155,7 @@ class _Writer:
         yield entry.message
         for number, result in enumerate(entry.results, start=1):
             yield self._result(result, is_last=number == len(entry.results))
-        if not self._profile.pictures_in_results:
+        if self._profile.has_pictures and not self._profile.pictures_in_results:
             for result in entry.results:
                 yield from self._frames(result)
 
@@ -164,7 +165,8 @@ class _Writer:
         parts: list[Part] = [TextPart(entry.text)]
         if text := self._changes(entry.view, entry.agent):
             parts.append(TextPart(text))
-        parts.append(self._picture(entry.view.frame, id(entry.view)))
+        if self._profile.has_pictures:
+            parts.append(self._picture(entry.view.frame, id(entry.view)))
         return HumanMessage(tuple(parts))
 
     def _result(self, result: Result, *, is_last: bool) -> ToolMessage:
@@ -172,7 +174,7 @@ class _Writer:
         changes = self._changes(result.view, result.agent) if is_last or result.view else ""
         text = f"{result.text}\n\n{changes}" if changes else result.text
         images: list[ImagePart] = []
-        if self._profile.pictures_in_results:
+        if self._profile.has_pictures and self._profile.pictures_in_results:
             found = [self._picture(frame, id(frame)) for frame in result.pictures]
             if result.view is not None:
                 found.append(self._picture(result.view.frame, id(result.view)))
