@@ -122,6 +122,7 @@ def _identity(goal: Goal, index: int, jobs: list[Job], memory: Memory, account: 
             account.open_ended = True
             account.doubts.append(f"I am not sure that {_and(unsure)} is {target.text}.")
         if opaque and (target.classes or target.by_looks):
+            account.open_ended = True
             account.doubts.append(f"By the looks I took {_and(opaque)} for {target.text}.")
     if target.every or target.ids or target.size or len(jobs) != 1 or target.but:
         return
