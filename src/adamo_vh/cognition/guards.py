@@ -86,5 +86,5 @@ class ProtocolGuard:
         """`PROTOCOL` if there were too many."""
         if self._in_a_row < self._max_unreadable:
             return None
-        why = f"{self._in_a_row} replies in a row could not be read."
+        why = f"{self._in_a_row} replies in a row were neither a call nor an answer."
         return Stop(TerminationReason.PROTOCOL, why)

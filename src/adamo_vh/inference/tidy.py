@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -42,7 +43,7 @@ def _tidied(call: ToolCall, names: Iterable[str]) -> ToolCall:
     arguments = None if call.arguments is None else clean_arguments(call.arguments)
     raw = encodable_text(call.raw)
     if arguments is None and not raw:
-        raw = encodable_text(repr(call.arguments)[:_LONGEST_RAW])
+        raw = _shown(call.arguments)
     return replace(
         call,
         id=encodable_text(call.id),
@@ -53,5 +54,9 @@ def _tidied(call: ToolCall, names: Iterable[str]) -> ToolCall:
     )
 
 
-_LONGEST_RAW = 2000
-"""Letters that are kept of what is no JSON."""
+def _shown(arguments: object) -> str:
+    """What is no JSON, in few letters."""
+    try:
+        return encodable_text(reprlib.repr(arguments))
+    except (ValueError, RecursionError):  # A whole number can be too long to be written.
+        return "(no JSON)"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 
 import pytest
 from hypothesis import given
@@ -58,3 +59,32 @@ def test_an_answer_survives_writing_and_reading(form: Form, thought: str, answer
 @pytest.mark.parametrize("text", ['{"a":' * 5000, "{" * 10_000, " " * 10_000, "Action:" * 5000])
 def test_long_garbage_is_no_trap(form: Form, text: str) -> None:
     form.read(text, TOOLS)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize(
+    "piece",
+    [
+        " ",
+        "\n",
+        ",",
+        "Thought: ",
+        "Action: ",
+        "Action: Look\n",
+        "* ",
+        "```\n",
+        "{",
+        '{"a":',
+        "_",
+        "Action Input:",
+    ],
+)
+def test_a_long_text_is_read_in_proportion_to_its_length(form: Form, piece: str) -> None:
+    for text in (
+        piece * (64_000 // len(piece)),
+        f"{' ' * 64_000}{{}}",
+        f"Action: Look{',' * 64_000}x",
+    ):
+        begin = time.perf_counter()
+        form.read(text, TOOLS)
+        assert time.perf_counter() - begin < 2.0
