@@ -14,6 +14,7 @@ from statistics import median
 import pytest
 
 SRC = Path(__file__).resolve().parents[1] / "src"
+TESTS = Path(__file__).resolve().parent
 MODULES = {path.relative_to(SRC).as_posix(): path for path in sorted(SRC.rglob("*.py"))}
 TREES = {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in MODULES.items()}
 LENGTHS = {
@@ -73,6 +74,33 @@ def test_a_function_fits_on_one_screen() -> None:
         if isinstance(node, Function)
     }
     assert {where: length for where, length in lengths.items() if length > 60} == {}
+
+
+def _parameters(node: Function) -> int:
+    named = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+    return len([item for item in named if item.arg not in ("self", "cls")])
+
+
+def test_a_call_can_be_read_at_a_glance() -> None:
+    counts = {
+        f"{name}:{node.lineno} {node.name}": _parameters(node)
+        for name, tree in TREES.items()
+        if not name.startswith("adamo_vh/cli/")  # There every option of a command is one.
+        for node in ast.walk(tree)
+        if isinstance(node, Function)
+    }
+    assert {where: count for where, count in counts.items() if count > 10} == {}
+
+
+def test_tests_mirror_the_tree() -> None:
+    rooms = {path.relative_to(SRC / "adamo_vh").parent for path in MODULES.values()}
+    tested = {path.relative_to(TESTS).parent for path in TESTS.rglob("test_*.py")}
+    assert {room for room in tested if room.parts[:1] != ("tools",)} - rooms == set()
+
+
+def test_tests_are_as_long_as_they_need_to_be() -> None:
+    lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in TESTS.rglob("*.py"))
+    assert lines >= 0.6 * sum(LENGTHS.values())
 
 
 def test_a_module_is_named_after_what_it_holds() -> None:

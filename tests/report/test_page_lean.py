@@ -202,7 +202,7 @@ def test_protocol_failures_are_said_and_counted(tmp_path: Path) -> None:
     assert [turn.tone for turn in lean_turns(run)] == ["unreadable"]
     page = page_of(tmp_path)
     assert "Protocol failure, unparsed call: it holds the start of a call." in page.text
-    assert "answers in a row could not be read" in page.text
+    assert "replies in a row were neither a call nor an answer" in page.text
     assert numbers(page)["protocol failures"] == "1"
     assert numbers(page)["calls asked as"] == "react"
 

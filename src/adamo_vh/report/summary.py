@@ -21,7 +21,7 @@ _ENDINGS = {
     TerminationReason.PROTOCOL: (
         "truncated",
         "Unreadable",
-        "{limits.max_unreadable} answers in a row could not be read.",
+        "{limits.max_unreadable} replies in a row were neither a call nor an answer.",
     ),
     TerminationReason.LOOP: (
         "truncated",
