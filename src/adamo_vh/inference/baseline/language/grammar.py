@@ -20,6 +20,7 @@ from typing import TypeVar
 from adamo_vh.inference.baseline.language.phrases import (
     Cursor,
     NotUnderstood,
+    left_out,
     noun_phrase,
     starts_phrase,
 )
@@ -210,7 +211,19 @@ def _put(cursor: Cursor, reading: Reading, things: list[Description]) -> None:
     if place is TOGETHER:
         reading.together(things)
     else:
-        reading.put(things, place)
+        reading.put(_with_left_out(cursor, things), place)
+
+
+def _with_left_out(cursor: Cursor, things: list[Description]) -> list[Description]:
+    """Read "put everything on the floor EXCEPT THE PLATE"."""
+    if cursor.peek() is not Kind.EXCEPT:
+        return things
+    if not any(thing.every for thing in things):
+        raise cursor.fail("nothing can be left out of one thing")
+    but = tuple(left_out(cursor))
+    if cursor.peek() in PLACES:
+        raise cursor.fail("two places for one thing")
+    return [replace(t, but=(*t.but, *but)) if t.every else t for t in things]
 
 
 def _is_destination(cursor: Cursor) -> bool:

@@ -8,16 +8,7 @@ from adamo_vh.inference.baseline.language.plan import Description, Relation, Siz
 from adamo_vh.inference.baseline.language.words import Kind, Token
 
 _BEFORE_NOUN = frozenset(
-    {
-        Kind.DET,
-        Kind.EVERY,
-        Kind.COUNT,
-        Kind.COLOUR,
-        Kind.SHAPE,
-        Kind.GLASSY,
-        Kind.SIZE,
-        Kind.OTHER,
-    }
+    (Kind.DET, Kind.EVERY, Kind.COUNT, Kind.COLOUR, Kind.SHAPE, Kind.GLASSY, Kind.SIZE, Kind.OTHER)
 )
 _STARTERS = _BEFORE_NOUN | {Kind.CLASS, Kind.OBJECT, Kind.ID, Kind.TAGGED, Kind.LABEL}
 
@@ -26,8 +17,7 @@ _PLURAL_NOUNS = (
     "objects|items|things|articles|ones|stuff|products|locks|padlocks|batteries|flashlights|"
     "torches|tapes|screwdrivers|cans|tins|medicines|keys|bottles|glasses|tumblers|cups|mugs|"
     "plants|plates|dishes|lighters|corners|belongings|food|foods|groceries|edibles|eatables|tools|"
-    "kitchenware|tableware|crockery|utensils|vessels|drinkware|drinks|beverages|snacks|others|"
-    "stuff"
+    "kitchenware|tableware|crockery|utensils|vessels|drinkware|drinks|beverages|snacks|others"
 )
 
 
@@ -109,10 +99,10 @@ class _Draft:
     source: tuple[Relation, tuple[str, ...]] | None = None
 
     def narrow(self, value: str) -> None:
-        """Add what a class word may mean; two words together mean what both can mean."""
+        """Add what a class word may mean: of two, what both can, or else the last, the head."""
         new = value.split()
         both = [name for name in self.classes if name in new]
-        self.classes = both or (new if not self.classes else self.classes)
+        self.classes = both or new
 
     def says_something(self) -> bool:
         return bool(
@@ -155,14 +145,11 @@ def noun_phrase(cursor: Cursor) -> Description:
     begin = cursor.mark()
     draft = _Draft()
     _before_noun(cursor, draft)
-    found = _noun(cursor, draft)
+    _noun(cursor, draft)
     any_of_them = cursor.words_since(begin).startswith("any ")
     while _after_noun(cursor, draft):
         # "any object with a label" on the floor: all such objects.
         draft.every = draft.every or (any_of_them and draft.generic)
-        found = True
-    if not found and not draft.says_something():
-        raise cursor.fail("I expected a thing here")
     if not draft.says_something() and not draft.generic:
         raise cursor.fail("I expected a thing here")
     text = cursor.words_since(begin)
@@ -237,18 +224,30 @@ def _after_noun(cursor: Cursor, draft: _Draft) -> bool:
 
 def _except(cursor: Cursor, draft: _Draft) -> bool:
     """Read "except the cup and the plate"."""
-    if not cursor.accept(Kind.EXCEPT):
+    if cursor.peek() is not Kind.EXCEPT:
         return False
-    draft.but.append(noun_phrase(cursor))
+    draft.but += left_out(cursor)
     draft.every = draft.every or draft.plural
+    return True
+
+
+def left_out(cursor: Cursor) -> list[Description]:
+    """Read "except the cup, the key, and the plate".
+
+    Raises:
+        NotUnderstood: No thing follows.
+    """
+    cursor.next()
+    things = [noun_phrase(cursor)]
     while cursor.peek() in (Kind.AND, Kind.COMMA, Kind.OR):
         mark = cursor.mark()
-        cursor.next()
+        while cursor.accept(Kind.AND, Kind.COMMA, Kind.OR):
+            pass
         if not starts_phrase(cursor):
             cursor.rewind(mark)
             break
-        draft.but.append(noun_phrase(cursor))
-    return True
+        things.append(noun_phrase(cursor))
+    return things
 
 
 def _id(cursor: Cursor, draft: _Draft) -> bool:

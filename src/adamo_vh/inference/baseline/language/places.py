@@ -86,7 +86,7 @@ def _one_place(cursor: Cursor, reading: Reading) -> Place:
             cursor.next()
             return Place(Relation.FAR, _anchor(cursor, reading), distance_m=distance)
         if cursor.peek() not in (Kind.SIDE, Kind.FAR):
-            raise cursor.fail("how far from what?")
+            raise NotUnderstood(f"'{centimetres} cm' (which way, or from what?)")
     token = cursor.next()
     if token.kind is Kind.HOME:
         return Place(Relation.HOME)

@@ -22,10 +22,15 @@ _UNITS = {"cm": 1, "centimetre": 1, "centimeter": 1, "m": 100, "metre": 100, "me
 _NUMBERS = {"a": 1, "an": 1, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "half a": 0.5,
             "ten": 10, "twenty": 20, "thirty": 30, "forty": 40, "fifty": 50}  # fmt: skip
 _LENGTH = re.compile(
-    r"\b(?:about |around |at least |some |roughly |exactly )?"
+    r"\b(?:by )?(?:about |around |at least |some |roughly |exactly )?"
     r"(\d+(?:[.,]\d+)?|half a|an?|one|two|three|four|five|ten|twenty|thirty|forty|fifty) ?"
     r"(cm|centimet(?:re|er)|m|met(?:re|er)|inche?|foot|feet)s?\b(?: away)?"
 )
+_WAY_FIRST = re.compile(
+    r"\b(?:(?:to|on|towards?) (?:the|your|my) )?(left|right|front|back|forwards?|backwards?|"
+    r"closer to me|away from me)(?: (?:for|of))? (@\d+)(?! (?:from|to the|left|right)\b)"
+)
+_PLAIN_WAY = re.compile(r"(@\d+) (?:towards? )?(?:the )?(left|right)\b(?! (?:of|side|hand)\b)")
 _WAY = re.compile(
     r"(@(\d+)|\ba (?:little )?bit|\ba little|\bslightly|\bfurther|\bmore)? ?"
     r"\b(?:(?:to|on|towards?) (?:the|your|my) (left|right|front|back)|"
@@ -37,12 +42,24 @@ _COUNTED = re.compile(
     r"glasses|cups|mugs|plates|plants|lighters|tins|cans|screwdrivers|flashlights|torches|tapes)\b)"
 )
 _WORDS = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"]
+_NUMBER_LEFT_OUT = re.compile(
+    r"\b(?:all|every\w*|each|any\w*|both|(?:the|two|three|four|five) \w+s)\b[^.;!?]*?"
+    r"\b(?:but|except|save|apart from|other than|excluding|aside from|leaving out|minus|"
+    r"with the exception of|leave(?: out)?|leaving|keep)(?: for)?"
+    r" (?:just |only |exactly |about |any |a )?"
+    r"(?:one|two|three|four|five|six|seven|eight|nine|ten|some|few|couple|half|single)\b"
+    r"(?: of)?(?: the)?(?: (?!on\b|in\b|to\b|near\b|next\b)\w+)?"
+)
 _RULES: tuple[tuple[str, str], ...] = (
     (r"\bi'd\b", "i would"),
     (r"^(?:i'm|i am|we are|we're|it is|it's) (?:so |very )?\w+\s*[,.;!]\s*", ""),
     (r"\b(?:that|which) (?:is|are) (?:not|n't) (?:an? |the )?", "except "),
     (r"\b(?:that|which) (?:isn't|aren't|is not|are not) (?:an? |the )?", "except "),
-    (r"\b(everything|anything|all (?:of )?(?:the )?\w+|every \w+|all) but (?=the|a|my|\w+s\b)",
+    (r"\b(everything|anything|all (?:of )?(?:the )?\w+|every \w+|all) but "
+     r"(?!not\b|do\b|don't|never|then\b|first\b|only\b|put\b|place\b|pick\b|take\b|get\b|"
+     r"bring\b|move\b|leave\b|drop\b|set\b|lay\b|keep\b|look\b|go\b|hold\b|avoid\b)",
+     r"\1 except "),
+    (r"\b((?:everything|anything|all|every|each)\b[^.;!?]*?) but (?:for )?(?=(?:the|an?|my)\b)",
      r"\1 except "),
     (r"\b(put|place|set|lay|bring|move|take|get) ((?:(?!\bback\b)[\w' ])+?) back"
      r"(?=\s*(?:$|[.!?;,]|and\b|then\b|please\b))", r"\1 \2 where it was"),
@@ -99,7 +116,8 @@ def rephrased(text: str) -> str:
     """
     plain = " ".join(text.lower().replace("\u2019", "'").split())
     plain = _COUNTED.sub(_count_word, plain)
-    plain = _WAY.sub(_way, _LENGTH.sub(_length, plain))
+    plain = _WAY_FIRST.sub(_way_last, _LENGTH.sub(_length, plain))
+    plain = _WAY.sub(_way, _PLAIN_WAY.sub(r"\1 to the \2", plain))
     for pattern, better in _compiled():
         plain = pattern.sub(better, plain)
     return plain
@@ -108,6 +126,18 @@ def rephrased(text: str) -> str:
 def with_lengths(text: str) -> str:
     """Distances in the one form that the rest of the grammar knows: "1 m" as "@100"."""
     return _LENGTH.sub(_length, text)
+
+
+def number_left_out(text: str) -> str:
+    """Words that leave out a number of things, not which: "all but one lock"; empty if none do."""
+    plain = _COUNTED.sub(_count_word, text)
+    match = _NUMBER_LEFT_OUT.search(plain)
+    return match[0] if match else ""
+
+
+def _way_last(match: re.Match[str]) -> str:
+    side = match[1] in ("left", "right", "front", "back")
+    return f"{match[2]} to the {match[1]}" if side else f"{match[2]} {match[1]}"
 
 
 def _count_word(match: re.Match[str]) -> str:

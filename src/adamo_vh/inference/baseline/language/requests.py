@@ -7,10 +7,10 @@ from dataclasses import replace
 from functools import lru_cache
 
 from adamo_vh.inference.baseline.language.grammar import read_things, wishes
-from adamo_vh.inference.baseline.language.plan import Act, Plan
+from adamo_vh.inference.baseline.language.plan import Act, Description, Plan
 from adamo_vh.inference.baseline.language.questions import read_question, read_statement
-from adamo_vh.inference.baseline.language.rephrasing import with_lengths
-from adamo_vh.inference.baseline.language.spelling import known_words, spelled
+from adamo_vh.inference.baseline.language.rephrasing import number_left_out, with_lengths
+from adamo_vh.inference.baseline.language.spelling import corrected, known_words, spelled
 
 CAN = (
     "I can pick things up, put them on the floor, in a corner, on furniture, back, or beside, "
@@ -18,8 +18,20 @@ CAN = (
 )
 _NOT = re.compile(
     r"^(?:please |and |but |so |also )*(?:do not|don't|dont|never|you must not|you should not|"
-    r"must not|mustn't|shouldn't|you may not|avoid|refrain from|there is no need to|no need to|"
-    r"not)\b ?(?:ever )?(.*)$"
+    r"must not|mustn't|shouldn't|you may not|there is no need to|no need to|"
+    r"(?P<bare>avoid|refrain from|not))\b ?(?:ever )?(?P<what>.*)$"
+)
+_HANDLE = re.compile(
+    r"^(?:touch(?:ing)?|mov(?:e|ing)|includ(?:e|ing)|tak(?:e|ing)|us(?:e|ing)|disturb(?:ing)?|"
+    r"handl(?:e|ing)|remov(?:e|ing)|forget) "
+)
+_SWITCH = re.compile(
+    r"(?!turn (?:to|towards?|left|right|back|around|about|round|your head)\b(?! the \w+ on)|"
+    r"turn (?:around|about|round|over)$|point your eyes|(?:spin|rotate|flip) (?:around|round|left|"
+    r"right)$)"
+    r"(?:(?:turn|switch|power|flip|rotate|spin|tilt|light|ignite|shine|flash|point|aim|click|"
+    r"activate|deactivate|start|enable|disable|toggle)(?: (?:on|off|up|over|out|down|round|"
+    r"around))?) (?:the|an?|my|your|it|them|that|this|all|both|every\w*|one|some|\w+)\b.*"
 )
 _IF = re.compile(
     r"^(?:only )?(?:if|in case|provided that|provided) (?P<condition>.+?)"
@@ -54,9 +66,11 @@ _POLITE = re.compile(
     r"you should|you can|let us|let's|go and|try to|afterwards|after that)[, ]+"
 )
 _LOOK = re.compile(
-    r"(?:look|gaze|stare|glance|peer|face|watch|observe|inspect|examine|check out|turn|point your "
-    r"eyes|take a look|have a look|look closely|turn your head|look over)"
-    r"(?: over| closely| directly| straight)?(?: (?:at|to|towards|toward|to face|on))? (.+)"
+    r"(?:(?:look|gaze|stare|glance|peer|face|watch|observe|inspect|examine|check out|"
+    r"take a look|have a look|look closely|look over)"
+    r"(?: over| closely| directly| straight)?(?: (?:at|to|towards|toward|to face|on))?|"
+    r"(?:turn|turn your head|point your eyes)(?: over| directly| straight)?"
+    r" (?:at|to|towards|toward|to face)) (.+)"
 )
 _LOOK_WAY = re.compile(
     r"(?:look|turn|gaze|glance|face|spin|rotate|turn your head|make a turn)(?: (?:to|"
@@ -95,6 +109,11 @@ _MIDDLE = re.compile(r"(?:the |a )?(?:middle|centre|center)(?: of (?:the |this )
 _CORNER = re.compile(
     r"(?:the |a |any |one )?(?:nearest |closest |of the )*corners?(?: of (?:the )?room)?"
 )
+_REFUSED = (
+    (_HERE, "I do not know where you are"),
+    (_LOOK_OUT, "I cannot tell where a window is"),
+    (_SWITCH, "I cannot switch, light, aim or turn things"),
+)
 _STEP_M = 0.6
 _COUNT_WORDS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "a": 1, "few": 3}
 
@@ -111,7 +130,7 @@ def understand(instruction: str, before: tuple[str, ...] = (), former: str = "")
     Returns:
         The plan; if any part has no meaning, one that names this part and does nothing.
     """
-    text = " ".join(instruction.lower().replace("\u2019", "'").split())
+    text = " ".join(instruction.lower().replace("\u2019", "'").replace("@", " ").split())
     plan = _read(text, before)
     if plan.problem and former:
         plan = _gone_on_with(former, text, before) or plan
@@ -139,14 +158,16 @@ def _gone_on_with(former: str, text: str, before: tuple[str, ...]) -> Plan | Non
 
 def _with_language(problem: str, text: str) -> str:
     words = re.findall(r"[^\W\d_]+", text)
-    strange = [word for word in words if word not in known_words()]
-    if len(words) >= 3 and len(strange) > len(words) / 2:
+    strange = [w for w in words if w not in known_words() and corrected(w) is None]
+    if len(strange) >= 3 and len(strange) > len(words) / 2:
         return f"{problem} (I read English only)"
     return problem
 
 
 def _read(text: str, before: tuple[str, ...]) -> Plan:
     text = text.strip(" .!")
+    if number := number_left_out(text):
+        return Plan(problem=f"'{number}' (say which, e.g. 'all but the red one')")
     special = _pause(text) or _conditional(text, before)
     if special:
         return special
@@ -215,8 +236,10 @@ def _by_parts(text: str, before: tuple[str, ...]) -> Plan:
     """Take out what is no wish about things, part by part; the rest is read as one."""
     rest: list[str] = []
     plan = Plan()
+    spared: list[Description] = []
     for part in _parts(text):
         more = _special_part(part, before)
+        spared += _spared(part, before)
         if more is None:
             rest.append(part)
         elif more.problem:
@@ -226,9 +249,30 @@ def _by_parts(text: str, before: tuple[str, ...]) -> Plan:
     if rest:
         read = wishes(", ".join(rest), before)
         if read.problem:
-            return _further_split(rest, before, plan) or read
-        plan = _joined(read, plan)
+            read = _further_split(rest, before, Plan()) or read
+        if read.problem:
+            return read
+        plan = _joined(_without(read, spared), plan)
     return plan if not plan.empty else Plan(problem="what to do, as I found no wish in it")
+
+
+def _spared(part: str, before: tuple[str, ...]) -> list[Description]:
+    """The things that "not the cup" and "do not touch the cup" leave out."""
+    match = _NOT.match(_unadorned(part))
+    if match is None:
+        return []
+    words = match["what"].rstrip(" .?!")
+    things = read_things(words, before) or read_things(_HANDLE.sub("", words), before)
+    return things or [goal.target for goal in wishes(words, before).goals]
+
+
+def _without(plan: Plan, spared: list[Description]) -> Plan:
+    """The same wishes, but of "all" things without those that were spoken of so."""
+    goals = tuple(
+        replace(g, target=replace(g.target, but=(*g.target.but, *spared))) if g.target.every else g
+        for g in plan.goals
+    )
+    return replace(plan, goals=goals)
 
 
 def _further_split(rest: list[str], before: tuple[str, ...], plan: Plan) -> Plan | None:
@@ -274,7 +318,9 @@ def _special_part(part: str, before: tuple[str, ...]) -> Plan | None:
     if not plain or _COURTESY.fullmatch(plain):
         return Plan(remarks=("You are welcome.",)) if part.startswith("thank") else Plan()
     if match := _NOT.match(plain):
-        return Plan(remarks=(f"As you asked, I do not {match[1].rstrip(' .?!')}.",))
+        heeded = f"'{plain.rstrip(' .?!')}'" if match["bare"] else ""
+        what = f"I heed {heeded}" if heeded else f"I do not {match['what'].rstrip(' .?!')}"
+        return Plan(remarks=(f"As you asked, {what}.",))
     if question := read_question(plain, before):
         return Plan(questions=(question,))
     if _PAUSE.fullmatch(plain):
@@ -283,10 +329,9 @@ def _special_part(part: str, before: tuple[str, ...]) -> Plan | None:
 
 
 def _act(plain: str, before: tuple[str, ...]) -> Plan | None:
-    if _HERE.fullmatch(plain):
-        return Plan(problem=f"'{plain}' (I do not know where you are)")
-    if _LOOK_OUT.fullmatch(plain):
-        return Plan(problem=f"'{plain}' (I cannot tell where a window is)")
+    for refused, why in _REFUSED:
+        if refused.fullmatch(plain):
+            return Plan(problem=f"'{plain}' ({why})")
     if _RETURN.fullmatch(plain):
         return Plan(acts=(Act("walk", direction="start", text="back"),))
     if match := _LOOK_WAY.fullmatch(plain):

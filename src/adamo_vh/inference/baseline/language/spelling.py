@@ -14,6 +14,7 @@ _FURTHER_WORDS = (
     "window door wall holding near visible anything something nothing everything here there when "
     "why steps step metres meters centimetres metre meter face return follow me my away look"
 )
+_SLIPS = {"teh": "the", "hte": "the", "thr": "the", "adn": "and", "nad": "and", "fo": "of"}
 _LEAST_LETTERS = 3
 _LONG_WORD = 7
 _USUAL = frozenset(("pick", "place", "drop", "floor", "table", "take", "bring", "plate", "glass"))
@@ -72,6 +73,21 @@ def corrected(word: str) -> str | None:
     return best[0] if len(best) == 1 else None
 
 
+def _as_phrase(word: str, behind: str) -> str | None:
+    """The word that makes a known phrase with the next one: "gass lighter"."""
+    from rapidfuzz.distance import OSA
+
+    following = re.match(r" ([a-z]+)", behind)
+    if following is None or word in known_words() or word in _OTHER_WORDS:
+        return None
+    found = {
+        first
+        for first, _, rest in (phrase.partition(" ") for phrase in phrase_table())
+        if rest == following[1] and first[0] == word[0] and OSA.distance(word, first) == 1
+    }
+    return found.pop() if len(found) == 1 else None
+
+
 def _is_part(word: str, known: str) -> bool:
     """Whether only letters are missing."""
     letters = iter(known)
@@ -93,7 +109,8 @@ def spelled(text: str) -> tuple[str, dict[str, str]]:
 
     def put_right(match: re.Match[str]) -> str:
         word = match[0]
-        meant = None if word in known else corrected(word)
+        meant = _SLIPS.get(word) or _as_phrase(word, text[match.end() :])
+        meant = meant or (None if word in known else corrected(word))
         if meant is None:
             return word
         slips[word] = meant

@@ -320,7 +320,8 @@ _VALUED: dict[Kind, dict[str, str]] = {
 
 _RANKS = {"second": 2, "2nd": 2, "next": 2, "third": 3, "3rd": 3, "fourth": 4}
 
-_WORD = re.compile(r"@[a-z]*\d*|[a-z]+_\d+|#?\d+|[a-z]+(?:'[a-z]+)?|[,.;:!?&]")
+_SHIFT_LETTERS = "@abcdefghijklmnopqrstuvwxyz"
+_WORD = re.compile(r"@(?:left|right|front|back)?\d+|[a-z]+_\d+|#?\d+|[a-z]+(?:'[a-z]+)?|[,.;:!?&]")
 
 
 @cache
@@ -378,7 +379,9 @@ def tokenize(text: str) -> list[Token]:
 def _longest_match(words: list[str], at: int) -> tuple[Token, int]:
     table = phrase_table()
     if words[at].startswith("@"):
-        return Token(Kind.SHIFT, words[at][1:], words[at]), 1
+        way, centimetres = words[at][1:].rstrip("0123456789"), words[at].lstrip(_SHIFT_LETTERS)
+        spoken = f"{centimetres} cm{f' to the {way}' if way else ''}"
+        return Token(Kind.SHIFT, words[at][1:], spoken), 1
     if re.fullmatch(r"#?\d+|[a-z]+_\d+", words[at]):
         return Token(Kind.ID, words[at].lstrip("#"), words[at]), 1
     for length in range(min(_longest(), len(words) - at), 0, -1):
