@@ -17,6 +17,7 @@ from adamo_vh.cognition.profile import PROFILES
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import read_result
 from adamo_vh.errors import ProviderError, RecordError
+from adamo_vh.inference.baseline import BaselineModel
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
 from adamo_vh.inference.model import Reply, Sampling
 from adamo_vh.record.run_folder import EVENTS, RESULT
@@ -118,7 +119,8 @@ def test_a_recorded_run_is_said_again_with_what_could_not_be_read(whole: Path) -
         task="T4", model=f"replay:{whole}", profile="lean", resolution=SMALL
     )
     assert before is not None
-    assert (again.state_hash, again.unreadable) == (before.state_hash, 1)
+    assert (again.state_hash, again.unreadable) == (before.state_hash, before.unreadable)
+    assert before.unreadable == 2  # The empty reply, and the one that holds half a call.
 
 
 class Failing(Player):
@@ -148,7 +150,7 @@ def test_a_conversation_with_a_fault_in_it_is_gone_on_with(tmp_path: Path) -> No
     assert second.reason is TerminationReason.ANSWERED
     before = (tmp_path / EVENTS).read_bytes()
     heard = Trajectory()
-    with Session.resume(tmp_path, observers=[heard]) as session:
+    with Session.resume(tmp_path, model=BaselineModel(), observers=[heard]) as session:
         assert heard.events == []
         assert session.say("Put the plate on the floor").reason is TerminationReason.ANSWERED
     assert (tmp_path / EVENTS).read_bytes().startswith(before)

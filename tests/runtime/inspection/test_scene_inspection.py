@@ -45,7 +45,7 @@ def test_built_in_scenes_are_sound(name: str) -> None:
         ("[0.326, -0.603]", "[0.076, -0.853]", "objects", "overlap"),
         ("[0.326, -0.603]", "[0.560, -0.603]", "objects[18].position", "does not stay on 'table'"),
         ("position = [-2.0, -1.0]", "position = [-0.05, -1.0]", "agent.position", "not fit"),
-        ("diffuse = 0.3", "diffuse = 0.3\nshadow = true", "lights", "2 lights cast shadows"),
+        ("diffuse = 0.24", "diffuse = 0.24\nshadow = true", "lights", "2 lights cast shadows"),
         (
             "[[objects]]",
             '[[furniture]]\nname = "twin"\nasset = "dining_table"\nposition = [0.3, -1.0]\n\n'
@@ -82,7 +82,7 @@ def test_a_pile_of_objects_is_told_and_never_simulated(asset: str) -> None:
     ("text", "part"),
     [
         (pile("tape", 100), "objects[1].position: objects 0 and 1 overlap; move one of them"),
-        (S1.replace("[0.0, -1.0, 0.8]", "[1.8, 1.6, 3.0]", 1), "lights[1].target: the light is"),
+        (S1.replace("[-0.8, -1.0, 0.4]", "[2.6, -1.0, 2.0]", 1), "lights[1].target: the light is"),
         (S1.replace('on = "table"', 'on = "table/top"', 1), "objects[0].on: nothing can lie on"),
     ],
 )
@@ -125,7 +125,7 @@ def test_a_pile_can_be_run_without_a_traceback(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("before", "after", "where", "part", "blocks"),
     [
-        ("[0.0, -1.0, 0.8]", "[1.8, 1.6, 3.0]", "lights[1].target", "at itself", True),
+        ("[-0.8, -1.0, 0.4]", "[2.6, -1.0, 2.0]", "lights[1].target", "at itself", True),
         ('on = "table"', 'on = "table/top"', "objects[0].on", "nothing can lie on", True),
         ("[0.326, -0.603]", "[0.430, -0.603]", "objects[18].position", "past the edge", False),
     ],
@@ -167,7 +167,7 @@ def test_the_command_prints_findings_and_writes_pictures(tmp_path: Path) -> None
 
 def test_a_field_that_breaks_the_schema_is_a_finding(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text(S1.replace("diffuse = 0.3", "diffuse = 7", 1))
+    path.write_text(S1.replace("diffuse = 0.24", "diffuse = 7", 1))
     code, found = check(path)
     assert (code, found["scene"], found["pictures"]) == (1, "mine", [])
     assert [finding["where"] for finding in found["findings"]] == ["lights[1].diffuse"]
