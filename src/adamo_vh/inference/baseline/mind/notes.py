@@ -1,8 +1,8 @@
 """What a note carries over to the next turn, in words: what the messages will not tell again.
 
-A note ends with a sentence in brackets, e.g. ``(Memory, step 3: wish 1: Plate_57 done; likely for
-wish 2: 8 62 %, 37 41 %)``. Only what is new is said. Now and then a note says all of it, so that
-nothing is lost when older messages leave the prompt.
+A note ends with a sentence in brackets, e.g. ``(Memory, step 3: wish 1: Plate_57 done; wish 2
+means most likely 8 (62 %), perhaps 37 (41 %))``. Only what is new is said. Now and then a note says
+all of it, so that nothing is lost when older messages leave the prompt.
 """
 
 from __future__ import annotations
@@ -49,6 +49,9 @@ _STAND = re.compile(rf"{_POINT} facing ({_NUMBER}) deg")
 _JOB = re.compile(r"(\S+) (to do|done|given up)(?: after (\d+) tries)?")
 _KEPT_FITS = 6
 _LEAST_FIT = 0.08
+_LIKELY = 0.5
+_FITS = re.compile(r"(.+) (\d{1,3}) means (.+)")
+_FIT = re.compile(r"(\S+) \((\d{1,3}) %\)")
 
 
 @dataclass(slots=True)
@@ -89,8 +92,8 @@ def apply(entry: Entry, memory: Memory, told: Collection[str] = ()) -> None:
         head, _, rest = item.partition(": ")
         if head == "places":
             _apply_places(rest, memory, told)
-        elif head.startswith("likely for "):
-            _apply_fits(head.removeprefix("likely for "), rest, memory)
+        elif fits := _FITS.fullmatch(item):
+            _apply_fits(fits[1], int(fits[2]) - 1, fits[3], memory)
         elif found := re.fullmatch(r"wish (\d{1,3})", head):
             for tag, status, tries in _JOB.findall(rest):
                 job = Job(int(found[1]) - 1, tag, _STATUS_OF[status], int(tries or 0))
@@ -146,11 +149,10 @@ def _apply_places(text: str, memory: Memory, told: Collection[str]) -> None:
             memory.things[tag] = thing_of(tag, _vec((x, y, z)), float(volume))
 
 
-def _apply_fits(head: str, rest: str, memory: Memory) -> None:
-    found = re.fullmatch(r"(.+) (\d{1,3})", head)
-    if found and found[1] in _SLOT_OF:
-        fits = memory.fits.setdefault((_SLOT_OF[found[1]], int(found[2]) - 1), {})
-        fits.update({t: int(value) / 100 for t, value in re.findall(r"(\S+) (\d{1,3}) %", rest)})
+def _apply_fits(slot: str, index: int, words: str, memory: Memory) -> None:
+    if slot in _SLOT_OF:
+        fits = memory.fits.setdefault((_SLOT_OF[slot], index), {})
+        fits.update({tag: int(value) / 100 for tag, value in _FIT.findall(words)})
 
 
 def things_noted(notes: Iterable[str]) -> dict[str, Thing]:
@@ -250,13 +252,19 @@ def _fits(memory: Memory, before: Memory, groups: Collection[Slot]) -> list[str]
         kept = _kept_fits(memory, slot, slot in groups)
         old = before.fits.get(slot, {})
         changed = [
-            f"{tag} {round(fit * 100)} %"
-            for tag, fit in memory.fits[slot].items()
+            f"{_likelihood(fit)} {tag} ({round(fit * 100)} %)"
+            for tag, fit in sorted(memory.fits[slot].items(), key=lambda item: -item[1])
             if round(old.get(tag, 0.0) * 100) != round(fit * 100)
             and (tag in kept or old.get(tag, 0.0) >= _LEAST_FIT)
         ]
-        parts += _joined(f"likely for {_SLOT[kind]} {index + 1}", changed)
+        parts += [f"{_SLOT[kind]} {index + 1} means {', '.join(changed)}"] if changed else []
     return parts
+
+
+def _likelihood(fit: float) -> str:
+    if fit < _LEAST_FIT:
+        return "hardly"
+    return "most likely" if fit >= _LIKELY else "perhaps"
 
 
 def _kept_fits(memory: Memory, slot: Slot, is_group: bool) -> set[str]:
