@@ -25,7 +25,7 @@ from adamo_vh.cognition.profile import Profile
 from adamo_vh.engine import ObjectMoved, SceneInfo
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import read_manifest
-from adamo_vh.errors import ConfigError, EngineError, RecordError
+from adamo_vh.errors import ConfigError, EngineError, ModelConfigError, RecordError
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.messages import AIMessage, Message, SystemMessage, ToolCall
 from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling
@@ -116,7 +116,7 @@ def test_an_own_task_is_scored(engine: BuiltinEngine) -> None:
 
 
 def test_what_is_no_model_is_said_to_be_none(engine: BuiltinEngine) -> None:
-    with pytest.raises(ConfigError, match=r"object is no model: it lacks info"):
+    with pytest.raises(ModelConfigError, match=r"object is no model: it lacks complete"):
         run(engine, model=object())
 
 
@@ -209,7 +209,7 @@ def test_whatever_raises_breaks_the_episode_and_nothing_else(
 ) -> None:
     crashed = run(engine, model=Crashing(), out=tmp_path / "model")
     assert crashed.termination is TerminationReason.BROKEN
-    assert "RuntimeError: out of ideas (complete, " in crashed.answer
+    assert "failed in complete(): RuntimeError: out of ideas" in crashed.answer
     assert read_trajectory(tmp_path / "model").ended is not None
     tool = run(engine, says("Wave", times=10), tools=OWN_TOOLS, out=tmp_path / "tool")
     assert "failed in Wave: ZeroDivisionError: an arm too few" in tool.answer
