@@ -1,6 +1,6 @@
 """Generated instructions, possible and impossible ones, and what is claimed of them.
 
-    python benchmarks/claims.py [--count 2000] [--draw 0] [--model baseline] [--scene s1]
+    python -m benchmarks.claims [--count 2000] [--draw 0] [--model baseline] [--scene s1]
         [--labeling sem] [--profile paper] [--resolution 640x360] [--json]
 
 Each instruction is made of a thing, what is said of it (true or false), a place (known or unknown

@@ -1,6 +1,6 @@
 """What people say first to a virtual human, said to a player and judged by world and answer.
 
-    python benchmarks/everyday.py [--model baseline] [--scene s1] [--labeling sem]
+    python -m benchmarks.everyday [--model baseline] [--scene s1] [--labeling sem]
         [--profile paper] [--resolution 960x540] [--lines 3,7] [--json]
 
 The instructions and their conditions are in `everyday.tsv`. An answer is judged by its text alone:
