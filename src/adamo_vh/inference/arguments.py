@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any, NoReturn
 
 from adamo_vh.inference.messages import ToolCall
+from adamo_vh.readable import encodable
 
 UNREADABLE = "unreadable_arguments"
 """Key under which a model is shown arguments of its own that were no JSON object."""
@@ -54,17 +55,12 @@ def wire_arguments(call: ToolCall) -> dict[str, Any]:
     object; so an unreadable text is shown to the model as a string in an object.
     """
     readable = None if call.arguments is None else clean_arguments(call.arguments)
-    return {UNREADABLE: encodable_text(call.raw)} if readable is None else readable
+    return {UNREADABLE: encodable(call.raw)} if readable is None else readable
 
 
 def dump_arguments(arguments: Mapping[str, Any]) -> str:
     """Arguments as JSON text."""
     return json.dumps(dict(arguments), ensure_ascii=False)
-
-
-def encodable_text(text: str) -> str:
-    """The text without lone surrogates, which JSON can spell and UTF-8 cannot."""
-    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _is_deeper(value: Any, levels: int) -> bool:
@@ -80,7 +76,7 @@ def _encodable(value: dict[str, Any]) -> dict[str, Any] | None:
         text = json.dumps(value, ensure_ascii=False, allow_nan=False)
     except ValueError:
         return None
-    cleaned: dict[str, Any] = json.loads(encodable_text(text))
+    cleaned: dict[str, Any] = json.loads(encodable(text))
     return cleaned
 
 

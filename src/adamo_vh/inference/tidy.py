@@ -7,10 +7,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.arguments import clean_arguments, encodable_text
+from adamo_vh.inference.arguments import clean_arguments
 from adamo_vh.inference.messages import ToolCall
 from adamo_vh.inference.model import Reply
 from adamo_vh.inference.tool_names import meant_tool
+from adamo_vh.readable import encodable
 
 
 def tidied(reply: Reply, tools: Iterable[ToolSchema]) -> Reply:
@@ -26,27 +27,27 @@ def tidied(reply: Reply, tools: Iterable[ToolSchema]) -> Reply:
     names = [tool.name for tool in tools]
     message = replace(
         reply.message,
-        text=encodable_text(reply.message.text),
+        text=encodable(reply.message.text),
         calls=tuple(_tidied(call, names) for call in reply.message.calls),
     )
     return replace(
         reply,
         message=message,
-        unreadable=encodable_text(reply.unreadable),
-        finish_reason=encodable_text(reply.finish_reason),
+        unreadable=encodable(reply.unreadable),
+        finish_reason=encodable(reply.finish_reason),
     )
 
 
 def _tidied(call: ToolCall, names: Iterable[str]) -> ToolCall:
-    written = encodable_text(call.name)
+    written = encodable(call.name)
     name = meant_tool(written, names) or written
     arguments = None if call.arguments is None else clean_arguments(call.arguments)
-    raw = encodable_text(call.raw)
+    raw = encodable(call.raw)
     if arguments is None and not raw:
         raw = _shown(call.arguments)
     return replace(
         call,
-        id=encodable_text(call.id),
+        id=encodable(call.id),
         name=name,
         arguments=arguments,
         raw=raw,
@@ -57,6 +58,6 @@ def _tidied(call: ToolCall, names: Iterable[str]) -> ToolCall:
 def _shown(arguments: object) -> str:
     """What is no JSON, in few letters."""
     try:
-        return encodable_text(reprlib.repr(arguments))
+        return encodable(reprlib.repr(arguments))
     except (ValueError, RecursionError):  # A whole number can be too long to be written.
         return "(no JSON)"

@@ -6,7 +6,7 @@ import hashlib
 import re
 from collections.abc import Collection, Iterable
 
-from adamo_vh.inference.arguments import encodable_text
+from adamo_vh.readable import encodable
 
 NAMESPACE = r"(?:functions?|tools?|default_api|api|multi_tool_use)[.:/]"
 """What models put before the name of a tool, as a regular expression."""
@@ -57,7 +57,7 @@ def fresh_id(seed: str, taken: Collection[str]) -> str:
     """A call id that follows from a text: nine letters and digits, which every server accepts."""
     number = 0
     while True:
-        digest = hashlib.sha256(f"{number} {encodable_text(seed)}".encode()).hexdigest()[:9]
+        digest = hashlib.sha256(f"{number} {encodable(seed)}".encode()).hexdigest()[:9]
         if digest not in taken:
             return digest
         number += 1

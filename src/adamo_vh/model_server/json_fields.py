@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from adamo_vh.inference.arguments import encodable_text
+from adamo_vh.readable import encodable
 
 _LARGEST = 1e15
 """No setting is larger; whole numbers in JSON may be, without an end."""
@@ -62,7 +62,7 @@ def text(entry: Mapping[str, Any], name: str, where: str = "") -> str:
     if not isinstance(value, str):
         place = f"{where}.{name}" if where else name
         raise BadRequest(place, f"it must be a text, not {_kind(value)}.")
-    return encodable_text(value)
+    return encodable(value)
 
 
 def choice_of(entry: Mapping[str, Any], name: str, known: Sequence[str], where: str = "") -> str:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.arguments import encodable_text, read_arguments
+from adamo_vh.inference.arguments import read_arguments
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
@@ -36,6 +36,7 @@ from adamo_vh.model_server.json_fields import (
     text,
 )
 from adamo_vh.model_server.result_pictures import with_result_pictures
+from adamo_vh.readable import encodable
 
 _ROLES = ("system", "developer", "user", "assistant", "tool")
 _FORMATS = ("JPEG", "PNG", "WEBP", "GIF")
@@ -155,7 +156,7 @@ def _content(content: Any, where: str, pictures: bool) -> tuple[Part, ...]:
     if content is None:
         return ()
     if isinstance(content, str):
-        return (TextPart(encodable_text(content)),)
+        return (TextPart(encodable(content)),)
     if not isinstance(content, list):
         raise BadRequest(where, "it must be a text or a list of parts.")
     kinds = ("text", "image_url") if pictures else ("text", "refusal")

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.arguments import dump_arguments, encodable_text, read_arguments
+from adamo_vh.inference.arguments import dump_arguments, read_arguments
 from adamo_vh.inference.json_scan import JsonScan
 from adamo_vh.inference.ladder.labels import without_thoughts
 from adamo_vh.inference.ladder.steps import (
@@ -23,6 +23,7 @@ from adamo_vh.inference.ladder.steps import (
     own_parameters,
 )
 from adamo_vh.inference.model import Rung
+from adamo_vh.readable import encodable
 
 _KEPT = ("type", "description", "enum", "const")
 _NESTED = ("items", "additionalProperties")
@@ -102,13 +103,13 @@ def _read(value: Mapping[str, Any], tools: Sequence[ToolSchema]) -> Step | Unrea
         action = action.get("name")
     if not isinstance(action, str) or not action.strip():
         return Unreadable('its JSON object has no "action" with the name of a tool.')
-    name, args = encodable_text(action).strip(), holder.get("args", holder.get("arguments"))
+    name, args = encodable(action).strip(), holder.get("args", holder.get("arguments"))
     if isinstance(args, dict):
         args = dump_arguments(args)
     readable = read_arguments(args or "") if isinstance(args, str | None) else None
     if readable is None:
         return Unreadable(f'the "args" of {name[:60]} are no JSON object.')
-    said = encodable_text(thought).strip() if isinstance(thought, str) else ""
+    said = encodable(thought).strip() if isinstance(thought, str) else ""
     return action_step(said, name, readable, tools)
 
 

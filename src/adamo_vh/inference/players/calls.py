@@ -16,7 +16,6 @@ from typing import Annotated, Any, Literal, assert_never
 from pydantic import Field, TypeAdapter
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
@@ -29,13 +28,14 @@ from adamo_vh.inference.messages import (
 )
 from adamo_vh.inference.model import Reply, Sampling
 from adamo_vh.inference.redaction import clean_message, cleaned, redacted
+from adamo_vh.readable import encodable
 
 Clean = Callable[[str], str]
 
 
 def without_keys(text: str) -> str:
     """The text without keys, and without what UTF-8 cannot spell."""
-    return redacted(encodable_text(text))
+    return redacted(encodable(text))
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,11 +18,11 @@ from pydantic import ValidationError
 from adamo_vh.action import ToolSchema
 from adamo_vh.errors import CassetteError, FileError, RecordError
 from adamo_vh.files import append_line, read_json, write_whole
-from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.messages import Message
 from adamo_vh.inference.model import Model, ModelInfo, ModelKind, Reply, Sampling
 from adamo_vh.inference.players.calls import Call, Request, clean_reply, codec, request_of, sections
 from adamo_vh.inference.players.wrapper import Ask, Wrapped
+from adamo_vh.readable import encodable
 
 LABEL, CALLS = "cassette.json", "calls.jsonl"
 FOLDER = "cassette"
@@ -156,7 +156,7 @@ class Cassette:
         # A key may be in the environment of only one of the two machines.
         asked = request_of(messages, tools, sampling)
         if sections(asked) != sections(call.request):
-            plain = request_of(messages, tools, sampling, clean=encodable_text)
+            plain = request_of(messages, tools, sampling, clean=encodable)
             if sections(plain) != sections(call.request):
                 raise CassetteError(f"{self.info.name}, {_difference(call, asked)}")
         self._next += 1

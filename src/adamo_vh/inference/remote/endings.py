@@ -6,9 +6,9 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.model import Ending
 from adamo_vh.inference.redaction import redacted
+from adamo_vh.readable import encodable
 
 _MEANINGS = (
     (
@@ -71,7 +71,7 @@ def finish_reason(body: Any) -> str:
     ):
         value = holder.get(key) if isinstance(holder, dict) else None
         if isinstance(value, str) and value:
-            return encodable_text(value[:_SHOWN])
+            return encodable(value[:_SHOWN])
     return ""
 
 
@@ -96,8 +96,8 @@ def refused_call(body: Any, text: str) -> tuple[str, str] | None:
             return None
         raw = _RAW.search(complaint[:_JUDGED])
         written = raw[1] if raw else ""
-    plain = " ".join(redacted(encodable_text(complaint[:_JUDGED])).split())
-    return encodable_text(written[:_JUDGED]), plain[:_SHOWN]
+    plain = " ".join(redacted(encodable(complaint[:_JUDGED])).split())
+    return encodable(written[:_JUDGED]), plain[:_SHOWN]
 
 
 def _first(body: Mapping[str, Any], key: str) -> Any:

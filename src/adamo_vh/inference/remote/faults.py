@@ -7,10 +7,10 @@ from collections.abc import Collection, Mapping
 from typing import Any
 from urllib.parse import urljoin
 
-from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.redaction import redacted
 from adamo_vh.inference.remote.exchange import Exchange
 from adamo_vh.inference.remote.retry import Failure
+from adamo_vh.readable import encodable
 
 _RETRYABLE_STATUS = frozenset({408, 409, 425, 429})
 _LONGEST_TEXT = 500
@@ -289,7 +289,7 @@ def _server_text(body: object) -> str:
 
 def _short(text: str) -> str:
     """One line without keys; redacted before it is cut, so that no half of a key survives."""
-    whole = " ".join(encodable_text(text[: 2 * _JUDGED]).split())
+    whole = " ".join(encodable(text[: 2 * _JUDGED]).split())
     # A key that the first cut went through is not shown, however few blanks were taken out.
     text = redacted(whole if len(text) <= 2 * _JUDGED else whole[: _JUDGED // 2])
     text = text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]}..."

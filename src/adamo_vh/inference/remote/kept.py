@@ -11,9 +11,10 @@ import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from adamo_vh.inference.arguments import encodable_text, wire_arguments
+from adamo_vh.inference.arguments import wire_arguments
 from adamo_vh.inference.messages import AIMessage
 from adamo_vh.inference.tool_names import wire_id, wire_name
+from adamo_vh.readable import encodable
 
 if TYPE_CHECKING:
     from pydantic_ai import messages as wire
@@ -45,7 +46,7 @@ def dump_kept(response: wire.ModelResponse, source: str, *, takes_thinking: bool
     fields = ("parts", "kind", "model_name", "provider_name", "provider_url", "canonical_system")
     body = {name: dumped[name] for name in fields if dumped.get(name) is not None}
     body["parts"] = [_without_empty(part) for part in body["parts"]]
-    return encodable_text(json.dumps({"from": source, "response": body}, ensure_ascii=False))
+    return encodable(json.dumps({"from": source, "response": body}, ensure_ascii=False))
 
 
 def _is_tagged_thinking(part: wire.ModelResponsePart) -> bool:
@@ -129,7 +130,7 @@ def _plain_parts(message: AIMessage, source: str) -> list[wire.ModelResponsePart
     from pydantic_ai import messages as wire
 
     return [
-        *([wire.TextPart(encodable_text(message.text))] if message.text.strip() else ()),
+        *([wire.TextPart(encodable(message.text))] if message.text.strip() else ()),
         *(
             wire.ToolCallPart(
                 wire_name(call.name), wire_arguments(call), tool_call_id=wire_id(call.id, source)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.arguments import dump_arguments, encodable_text, read_arguments
+from adamo_vh.inference.arguments import dump_arguments, read_arguments
 from adamo_vh.inference.messages import AIMessage, Message, ToolCall
 from adamo_vh.inference.model import Ending
 from adamo_vh.inference.reasoning_text import split_reasoning
@@ -15,6 +15,7 @@ from adamo_vh.inference.remote.endings import finish_reason, meaning
 from adamo_vh.inference.remote.kept import dump_kept
 from adamo_vh.inference.text_calls import UnparsedCall, read_calls
 from adamo_vh.inference.tool_names import fresh_id
+from adamo_vh.readable import encodable
 
 if TYPE_CHECKING:
     from pydantic_ai import messages as wire
@@ -62,7 +63,7 @@ def read_response(
     from pydantic_ai import messages as wire
 
     texts = [part.content for part in response.parts if isinstance(part, wire.TextPart)]
-    text, drafts = split_reasoning(encodable_text("\n\n".join(texts)))
+    text, drafts = split_reasoning(encodable("\n\n".join(texts)))
     thoughts = [part.content for part in response.parts if isinstance(part, wire.ThinkingPart)]
     taken = taken_ids(messages)
     calls: list[ToolCall] = []
@@ -78,7 +79,7 @@ def read_response(
     if calls:
         return Reading(message, Ending.CALL, reason)
     if not text:
-        draft = "\n".join([drafts, *map(encodable_text, thoughts)])
+        draft = "\n".join([drafts, *map(encodable, thoughts)])
         if tools and read_calls(draft, tools, taken) is not None:
             problem = f"holds a call inside its reasoning, where it is a draft. {_AS_CALLS}"
             return Reading(message, Ending.UNPARSED_CALL, reason, problem)
@@ -126,7 +127,7 @@ def taken_ids(messages: Sequence[Message]) -> set[str]:
 def _reason_of(response: wire.ModelResponse) -> str:
     details = response.provider_details or {}
     found = details.get("finish_reason") or response.finish_reason or ""
-    return encodable_text(str(getattr(found, "value", found)))
+    return encodable(str(getattr(found, "value", found)))
 
 
 def _stopped(response: wire.ModelResponse, reason: str) -> tuple[Ending, str] | None:
@@ -136,7 +137,7 @@ def _stopped(response: wire.ModelResponse, reason: str) -> tuple[Ending, str] | 
     if ending is None:
         return None
     if ending is Ending.FILTERED:
-        why = encodable_text(str(refusal or reason))[:200].rstrip(".")
+        why = encodable(str(refusal or reason))[:200].rstrip(".")
         return ending, f"was refused or stopped by a filter of the provider ({why})."
     if ending is Ending.UNPARSED_CALL:
         return ending, f"holds a call that the server could not read ({reason}). {_AS_CALLS}"
@@ -149,8 +150,8 @@ def _call(part: wire.ToolCallPart, taken: Collection[str]) -> ToolCall:
     raw = part.args if isinstance(part.args, str) else dump_arguments(part.args or {})
     # Some servers number calls anew in each answer; an id that means two calls confuses others.
     # Some give none; the library then makes one up at random, ours follows from the call.
-    call_id = encodable_text(part.tool_call_id)
+    call_id = encodable(part.tool_call_id)
     if call_id in taken or call_id.startswith(_MADE_UP):
         call_id = fresh_id(f"{part.tool_name} {raw}", taken)
-    name = encodable_text(part.tool_name)
-    return ToolCall(call_id, name, read_arguments(raw), encodable_text(raw))
+    name = encodable(part.tool_name)
+    return ToolCall(call_id, name, read_arguments(raw), encodable(raw))

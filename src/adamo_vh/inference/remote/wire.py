@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.arguments import encodable_text
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
@@ -22,6 +21,7 @@ from adamo_vh.inference.prompts import render
 from adamo_vh.inference.remote.clients import Connection
 from adamo_vh.inference.remote.kept import to_response
 from adamo_vh.inference.tool_names import wire_id, wire_name
+from adamo_vh.readable import encodable
 
 if TYPE_CHECKING:
     from pydantic_ai import messages as wire
@@ -150,14 +150,14 @@ def _system(message: SystemMessage, *, as_system: bool) -> wire.ModelRequestPart
     """System text; where a wire would move it to the front, it stays in place as the user's."""
     from pydantic_ai import messages as wire
 
-    text = encodable_text(message.text)
+    text = encodable(message.text)
     return wire.SystemPromptPart(text) if as_system else wire.UserPromptPart(text)
 
 
 def _result(message: ToolMessage, connection: Connection) -> wire.ToolReturnPart:
     from pydantic_ai import messages as wire
 
-    text = encodable_text(message.text).strip() or _NOTHING
+    text = encodable(message.text).strip() or _NOTHING
     pictures = [
         wire.BinaryContent(image.data, media_type=image.media_type)
         for image in message.images
@@ -174,7 +174,7 @@ def _human(message: HumanMessage) -> wire.UserPromptPart:
     from pydantic_ai import messages as wire
 
     content: list[wire.UserContent] = [
-        encodable_text(part.text)
+        encodable(part.text)
         if isinstance(part, TextPart)
         else wire.BinaryContent(part.data, media_type=part.media_type)
         for part in message.parts

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from adamo_vh.geometry import Array, Vec3
+from adamo_vh.geometry import Array, Vec3, hull
 from adamo_vh.inference.baseline.mind.memory import Thing
 from adamo_vh.inference.baseline.prompt.reading import Prompt, Room
 
@@ -60,20 +60,8 @@ def surface_hull(
 
 
 def hull_of(points: Sequence[Vec3]) -> list[tuple[float, float]]:
-    """Convex hull in the floor plane, counter-clockwise (Andrew's monotone chain)."""
-    ordered = sorted({(p.x, p.y) for p in points})
-    if len(ordered) < 3:
-        return ordered
-
-    def half(sequence: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-        chain: list[tuple[float, float]] = []
-        for p in sequence:
-            while len(chain) >= 2 and _turn(chain[-2], chain[-1], p) <= 0:
-                chain.pop()
-            chain.append(p)
-        return chain[:-1]
-
-    return half(ordered) + half(reversed(ordered))
+    """Convex hull in the floor plane, counter-clockwise."""
+    return hull((p.x, p.y) for p in points)
 
 
 def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
