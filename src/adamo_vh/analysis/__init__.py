@@ -1,0 +1,1 @@
+"""What many episodes say together: outcomes, cells, statistics. Pure functions, no engine."""
