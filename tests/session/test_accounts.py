@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -15,9 +16,11 @@ from adamo_vh.episode.result import read_manifest, read_result
 from adamo_vh.errors import CassetteError, ConfigError
 from adamo_vh.inference.cost.tokens import OPENAI_TILES, estimate_image, metered
 from adamo_vh.inference.model import ModelInfo, ModelKind
+from adamo_vh.inference.players.scripted import ScriptedModel
 from adamo_vh.inference.registry import create_model
 from adamo_vh.inference.remote.provider import ProviderModel
 from adamo_vh.record.termination import TerminationReason
+from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.session.forecasting import forecast_episodes
 from adamo_vh.session.session import Session
@@ -216,6 +219,65 @@ def test_what_a_lost_answer_took_is_counted_although_the_episode_broke(
     assert (result.requests, result.tokens, result.model_calls) == (2, 1234, 0)
     read = read_result(tmp_path / "run")
     assert read is not None and (read.requests, read.tokens) == (2, 1234)
+
+
+def broken_twice(engine: BuiltinEngine, folder: Path) -> None:
+    """An episode that broke, and broke again where it went on; each time an answer was paid."""
+    unreadable = completion('{"thought": broken')
+    too_long = fault(400, "request (60000 tokens) exceeds the available context size")
+    look = completion(
+        json.dumps({"thought": "On.", "action": {"name": "Look", "args": {"x": 1, "y": 1, "z": 1}}})
+    )
+    with FakeProvider([look, unreadable, too_long, unreadable, too_long]) as server:
+        adamo_vh.run_episode(
+            "Look",
+            model=server.uri(),
+            tool_calls="schema",
+            engine=engine,
+            resolution=SMALL,
+            out=folder,
+        )
+        adamo_vh.resume_episode(folder)
+
+
+def test_what_a_broken_episode_paid_stays_on_record_when_it_goes_on(
+    engine: BuiltinEngine, tmp_path: Path
+) -> None:
+    broken_twice(engine, tmp_path)
+    twice = read_result(tmp_path)
+    assert twice is not None and (twice.requests, twice.tokens) == (5, 3 * 1234)
+    after = adamo_vh.resume_episode(tmp_path, model=ScriptedModel("scripted", ()))
+    assert after.termination is TerminationReason.ANSWERED
+    assert (after.requests, after.tokens) == (6, 3 * 1234)
+    recorded = read_trajectory(tmp_path)
+    assert [spent.requests for spent in recorded.lost] == [2, 2]
+    assert adamo_vh.replay_episode(tmp_path).mismatches == ()
+
+
+def test_what_a_broken_episode_paid_counts_against_its_budget(
+    engine: BuiltinEngine, tmp_path: Path
+) -> None:
+    broken_twice(engine, tmp_path)
+    capped = adamo_vh.resume_episode(
+        tmp_path, budget=Budget(tokens=3 * 1234), model=ScriptedModel("scripted", ())
+    )
+    assert capped.termination is TerminationReason.BUDGET
+    assert "3,702 of 3,702 tokens are used" in capped.why
+
+
+def test_a_conversation_remembers_what_a_broken_instruction_paid(
+    engine: BuiltinEngine, tmp_path: Path
+) -> None:
+    broken_twice(engine, tmp_path)
+    with Session.resume(tmp_path, model=ScriptedModel("scripted", ())) as session:
+        session.say("Look again")
+        before = session.trajectory
+    ledger = Ledger()
+    guard = BudgetGuard(Budget(), ledger, Budget())
+    again = Session.resume(tmp_path, model=ScriptedModel("scripted", ()), guards=(guard,))
+    again.close()
+    assert again.trajectory.events == before.events
+    assert ledger.spent.tokens == 3 * 1234
 
 
 def test_a_server_that_counts_nothing_is_stopped_by_an_estimate(

@@ -21,7 +21,7 @@ from adamo_vh.cognition.turns import offered, read_turn
 from adamo_vh.engine import WorldEvent
 from adamo_vh.errors import ModelError
 from adamo_vh.inference.messages import AIMessage
-from adamo_vh.inference.model import Model, Sampling
+from adamo_vh.inference.model import Model, Sampling, Spent
 from adamo_vh.inference.tidy import tidied
 from adamo_vh.observation import AgentState, Frame, Observation
 from adamo_vh.perception import TextForm
@@ -32,6 +32,7 @@ from adamo_vh.record.trajectory import (
     Event,
     Happened,
     LeftOut,
+    Lost,
     Observer,
     Started,
     Thought,
@@ -161,6 +162,10 @@ class Agent:
         """
         self._state_hash = state_hash
         self._tell(Happened(self._steps, event, state_hash))
+
+    def lost(self, spent: Spent) -> None:
+        """Take note of what was spent on an answer that never came, before it goes on here."""
+        self._tell(Lost(self._steps, spent))
 
     def _begin(self, instruction: str) -> None:
         self._errand = Errand(self._steps, Doubts(self._profile))

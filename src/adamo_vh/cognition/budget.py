@@ -15,7 +15,7 @@ from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import Reply, Usage
 from adamo_vh.observation import Frame
 from adamo_vh.record.termination import Stop, TerminationReason
-from adamo_vh.record.trajectory import Acted, Ended, Event, Started, Thought
+from adamo_vh.record.trajectory import Acted, Ended, Event, Lost, Started, Thought
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +170,7 @@ class BudgetGuard:
             cost = 0.0 if _is_free(reply) else reply.cost_usd
             for ledger in (self._own, self._run):
                 ledger.spend(reply.usage, cost, seconds=reply.seconds)
-        elif isinstance(event, Ended) and event.spent is not None:
+        elif isinstance(event, Lost | Ended) and event.spent is not None:
             lost = event.spent
             for ledger in (self._own, self._run):
                 ledger.spend(lost.usage, lost.cost_usd, seconds=lost.seconds)

@@ -51,9 +51,9 @@ class Stops:
         self._ahead = deque(known)
 
     def notify(self, event: Event, frame: Frame | None = None) -> None:
-        """Go on in the record, and tell the guards."""
+        """Go on in the record, and tell the guards: of what was recorded, where it comes again."""
         if self._ahead:
-            self._ahead.popleft()
+            event = self._ahead.popleft()
         for guard in self._guards:
             guard.notify(event, frame)
 
@@ -72,7 +72,7 @@ class Stops:
         if self._ahead:
             if not isinstance(ended := self._ahead[0], Ended):
                 return None
-            return Stop(ended.reason, ended.why, ended.answer)
+            return Stop(ended.reason, ended.why, ended.answer, ended.spent)
         if limit := self._limits.exceeded(steps - errand.first_step, errand.watch.seconds):
             return limit
         return next((stop for guard in self._guards if (stop := guard.stop())), None)

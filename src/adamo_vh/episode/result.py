@@ -26,7 +26,7 @@ from adamo_vh.perception import Labeling
 from adamo_vh.record.old_format import OLD_FORMAT, upgraded_result
 from adamo_vh.record.run_folder import FORMAT, MANIFEST, RESULT, check_begun, read_head
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.trajectory import Ended, Trajectory
+from adamo_vh.record.trajectory import Trajectory
 
 _MOST_BYTES = 50_000_000
 _T = TypeVar("_T")
@@ -188,9 +188,7 @@ def summarise(
         scored = score(manifest.initial, final, task or find_task(config.task))
     thoughts = trajectory.thoughts
     replies = [thought.reply for thought in thoughts]
-    ends = [event for event in trajectory.events if isinstance(event, Ended)]
-    lost = [end.spent for end in ends if end.spent is not None]
-    answers: list[Reply | Spent] = [*replies, *lost]
+    answers: list[Reply | Spent] = [*replies, *trajectory.lost]
     kinds = Counter(act.name for act in trajectory.acts)
     stops = [manifest.initial.body.position, *(act.agent.position for act in trajectory.acts)]
     return EpisodeResult(

@@ -137,7 +137,16 @@ class Happened:
     type: Literal["happened"] = "happened"
 
 
-Event = Started | Observed | Thought | Acted | LeftOut | Shown | Happened | Ended
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """The episode broke here on an answer that never came, was paid for, and went on later."""
+
+    step: int
+    spent: Spent
+    type: Literal["lost"] = "lost"
+
+
+Event = Started | Observed | Thought | Acted | LeftOut | Shown | Happened | Lost | Ended
 
 
 class Observer(Protocol):
@@ -199,6 +208,12 @@ class Trajectory:
     def acts(self) -> list[Acted]:
         """Every tool call that was executed or refused."""
         return [e for e in self.events if isinstance(e, Acted)]
+
+    @property
+    def lost(self) -> list[Spent]:
+        """What was spent on answers that never came, whether it went on behind them or not."""
+        ends = [e.spent for e in self.events if isinstance(e, Lost | Ended)]
+        return [spent for spent in ends if spent is not None]
 
     @property
     def instructions(self) -> list[str]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
-from typing import IO
 
 from adamo_vh.errors import FileError, RecordError
-from adamo_vh.files import make_folder, naming, write_whole
+from adamo_vh.files import append_line, make_folder, naming, write_whole
 from adamo_vh.observation import Frame
 from adamo_vh.record.run_folder import EVENTS, FRAMES, RESULT, FolderLock
 from adamo_vh.record.trajectory import Event, codec, frame_name
@@ -37,7 +36,7 @@ class TrajectoryWriter:
         self._folder = folder
         self._known = None if known is None else deque(known)
         self._count = len(known or ())
-        self._file: IO[bytes] | None = None
+        self._goes_on = known is not None
         self._own_lock = FolderLock(folder) if lock is None else None
         try:
             if known is None:
@@ -45,7 +44,8 @@ class TrajectoryWriter:
                     raise RecordError(
                         f"{folder} already holds an episode; choose another --out folder."
                     )
-                self._file = self._opened()
+                with naming("written", make_folder(folder / FRAMES)):
+                    (folder / EVENTS).touch()
         except BaseException:
             self.close()
             raise
@@ -83,37 +83,30 @@ class TrajectoryWriter:
         )
 
     def _write(self, event: Event, frame: Frame | None) -> None:
-        if self._file is None:
-            # Now that all came again as it was, a later end and what a kill left may go.
-            (self._folder / RESULT).unlink(missing_ok=True)
-            _keep_lines(self._folder / EVENTS, self._count)
-            self._file = self._opened()
         if frame is not None:
             path = self._folder / FRAMES / frame_name(frame)
             if not path.exists():
                 write_whole(path, frame.data)
-        self._file.write(codec().dump_json(event) + b"\n")
-        self._file.flush()
-
-    def _opened(self) -> IO[bytes]:
-        with naming("written", make_folder(self._folder / FRAMES)):
-            return (self._folder / EVENTS).open("ab")
+        path, line = self._folder / EVENTS, codec().dump_json(event)
+        if self._goes_on:
+            # Now that all came again as it was, a later end and what a kill left may go; in one
+            # move, because what comes instead may tell what was paid.
+            (self._folder / RESULT).unlink(missing_ok=True)
+            write_whole(path, _first_lines(path, self._count) + line + b"\n")
+            self._goes_on = False
+        else:
+            append_line(path, line)
 
     def close(self) -> None:
-        """Close the file."""
-        if self._file is not None:
-            self._file.close()
+        """Let others write."""
         if self._own_lock is not None:
             self._own_lock.close()
 
 
-def _keep_lines(path: Path, count: int) -> None:
-    """Keep the first lines, without what a kill left of another."""
-    if not path.exists():
-        return
-    first = path.read_bytes().splitlines(keepends=True)[:count]
-    with path.open("r+b") as file:
-        file.truncate(sum(map(len, first)))
+def _first_lines(path: Path, count: int) -> bytes:
+    """The first lines of a file; nothing, if it is missing."""
+    lines = path.read_bytes().split(b"\n")[:count] if path.exists() else []
+    return b"".join(line + b"\n" for line in lines)
 
 
 def _spelt(event: Event) -> str:

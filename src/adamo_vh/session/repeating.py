@@ -6,8 +6,9 @@ from collections import deque
 from collections.abc import Callable, Sequence
 
 from adamo_vh.engine import WorldEvent
+from adamo_vh.inference.model import Spent
 from adamo_vh.observation import Frame
-from adamo_vh.record.trajectory import Event, Happened, Observer
+from adamo_vh.record.trajectory import Event, Happened, Lost, Observer
 
 
 def later(observers: Sequence[Observer], known: int) -> Sequence[Observer]:
@@ -37,17 +38,24 @@ class _FromThen:
 
 
 class Again:
-    """Lets happen in the world what is on record, at the moment at which it happened then."""
+    """Lets happen what is on record and not of the agent's doing, at the moment of then."""
 
-    def __init__(self, known: Sequence[Event], apply: Callable[[WorldEvent], None]) -> None:
+    def __init__(
+        self,
+        known: Sequence[Event],
+        apply: Callable[[WorldEvent], None],
+        lose: Callable[[Spent], None],
+    ) -> None:
         """Prepare.
 
         Args:
             known: What is on record and will come again.
             apply: Lets something happen in the world.
+            lose: Takes note of what an answer took that never came.
         """
         self._ahead = deque(known)
         self._apply = apply
+        self._lose = lose
 
     def notify(self, event: Event, frame: Frame | None = None) -> None:
         """Go on in the record."""
@@ -57,5 +65,8 @@ class Again:
 
     def catch_up(self) -> None:
         """Let happen what is next, if it is nothing that the agent does."""
-        if self._ahead and isinstance(self._ahead[0], Happened):
-            self._apply(self._ahead[0].event)
+        match self._ahead[0] if self._ahead else None:
+            case Happened() as happened:
+                self._apply(happened.event)
+            case Lost() as lost:
+                self._lose(lost.spent)

@@ -30,7 +30,7 @@ from adamo_vh.episode.result import (
     write_record,
 )
 from adamo_vh.errors import ConfigError, FileError, RecordError
-from adamo_vh.inference.model import Model, ModelKind
+from adamo_vh.inference.model import Model, ModelKind, Spent
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.perception import Tagger
 from adamo_vh.record.run_folder import (
@@ -44,6 +44,7 @@ from adamo_vh.record.run_folder import (
 from adamo_vh.record.trajectory import (
     Ended,
     Event,
+    Lost,
     Observer,
     Trajectory,
     read_trajectory,
@@ -127,13 +128,13 @@ class Session:
         self.model = model
         self._parts, self._writer = parts, writer
         self._closing = ExitStack()
-        self._trajectory = Trajectory()
+        self._trajectory = Trajectory(tuple(known))  # What was recorded counts, not its repetition.
         config = manifest.config
         tagger = parts.get("labeling")
         server = open_server(config, world, parts.get("tools"), tagger)
         prompt = instructions(config, world, server, tagger)
         memory = parts.get("memory") or ShortTermMemory
-        self._happening = Again(known, self.apply)
+        self._happening = Again(known, self.apply, self._lose)
         self._agent = Agent(
             model,
             server,
@@ -141,7 +142,11 @@ class Session:
             AgentConfig(config.profile, config.k, config.text_form, config.sampling, config.limits),
             memory=memory(prompt, config.k, config.profile, config.text_form),
             guards=(BudgetGuard(config.budget), *parts.get("guards", ())),
-            records=(*((writer,) if writer else ()), self._trajectory, self._happening),
+            records=(
+                *((writer,) if writer else ()),
+                *later((self._trajectory,), len(known)),
+                self._happening,
+            ),
             observers=later(parts.get("observers", ()), len(known)),
             known=known,
         )
@@ -234,15 +239,17 @@ class Session:
                     "replayed, and not be continued. Run it again."
                 )
             check_handed(path, manifest, recorded, parts.get("tools"), parts.get("labeling"))
-            known = recorded.events
+            on_file = known = recorded.events
             if (ended := recorded.ended) is not None and not ended.reason.is_scored:
-                known = known[:-1]  # It broke: let it go on from there.
+                # It broke: let it go on from there, and what it paid stay on record.
+                on_file = known[:-1]
+                known = [*on_file, *([Lost(ended.steps, ended.spent)] if ended.spent else ())]
             mind = resumed_model(stack, path, manifest.config, recorded, parts.get("model"))
             if budget:
                 manifest = replace(manifest, config=replace(manifest.config, budget=budget))
                 check_price(manifest.config.model, mind, budget)
             world = opened(stack, manifest.config, parts.get("engine"), (path, manifest))
-            writer = TrajectoryWriter(path, known=known, lock=lock)
+            writer = TrajectoryWriter(path, known=on_file, lock=lock)
             stack.callback(writer.close)
             session = cls(manifest, world, mind, parts, writer=writer, folder=path, known=known)
             session._closing.enter_context(stack.pop_all())
@@ -300,6 +307,9 @@ class Session:
         """
         self.engine.apply(event)
         self._agent.happened(event, self.engine.state().hash())
+
+    def _lose(self, spent: Spent) -> None:
+        self._agent.lost(spent)
 
     def result(self) -> EpisodeResult:
         """Score and count what happened since the session began; written into the run folder.
