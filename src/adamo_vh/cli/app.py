@@ -207,6 +207,16 @@ def report(run_dir: Annotated[Path, typer.Argument(help="A run folder.")]) -> No
     say(write_page(run_dir))
 
 
+@app.command()
+def explain(
+    run_dir: Annotated[Path, typer.Argument(help="A run folder.")], json: Json = False
+) -> None:
+    """Say why a recorded episode failed: its class, a finer code, and what shows it."""
+    from adamo_vh.cli.explain import explain_and_show
+
+    explain_and_show(run_dir, as_json=json)
+
+
 @tasks_app.callback()
 def tasks(context: typer.Context, json: Json = False) -> None:
     """List the tasks with their C-D levels."""
