@@ -8,17 +8,20 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any
 
 import pytest
 from pydantic import Field
+from tests.fake_provider import FakeProvider, completion
 
 import adamo_vh
 from adamo_vh.action import Code, Feedback, Outcome, ToolSchema
 from adamo_vh.action_server import PAPER_TOOLS, Tool, ToolContext
 from adamo_vh.benchmark.tasks import TASKS
+from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.memory.protocol import Memory
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
 from adamo_vh.cognition.profile import Profile
@@ -131,6 +134,26 @@ def test_money_without_a_price_is_refused_before_the_first_call(tmp_path: Path) 
     assert done.returncode == 2, done.stderr
     assert "No price is known" in done.stderr
     assert not list((tmp_path / "runs").glob("*"))
+    film = tmp_path / "film.webm"
+    film.write_bytes(b"of an earlier run")
+    for words in (["run", "look", "--video", str(film)], ["chat"]):
+        done = subprocess.run(
+            [sys.executable, "-m", "adamo_vh", *words, *given, "--out", str(tmp_path / "out")],
+            cwd=tmp_path, input="look\n", capture_output=True, text=True, env=environment,
+            check=False,
+        )  # fmt: skip
+        assert done.returncode == 2 and "No price is known" in done.stderr
+        assert not (tmp_path / "out").exists()
+    assert film.read_bytes() == b"of an earlier run"
+
+
+def test_a_price_is_asked_for_before_a_probe_is_paid(tmp_path: Path) -> None:
+    with FakeProvider([completion("red, blue")]) as server:
+        for out in (None, tmp_path):
+            begin = partial(Session.begin, cap=Budget(usd=1.0), out=out)
+            with pytest.raises(ConfigError, match="No price is known"):
+                begin(EpisodeConfig("Look", model=server.uri()))
+        assert not server.requests and not list(tmp_path.iterdir())
 
 
 def test_resume_takes_no_setting_that_it_would_not_heed(tmp_path: Path) -> None:

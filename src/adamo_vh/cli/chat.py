@@ -14,11 +14,10 @@ from adamo_vh.cli.episode import mark_latest, run_folder
 from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.progress import Progress
 from adamo_vh.cli.terminal import is_text, line, say
-from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo_vh.cognition.budget import Budget
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.readable import readable
 from adamo_vh.record.trajectory import Ended
-from adamo_vh.session.forecasting import check_price
 from adamo_vh.session.session import Session
 
 _LEAVE = ("quit", "exit", "/quit", "/exit", "/q")
@@ -42,28 +41,24 @@ def talk(
     """Read instructions from the terminal, or from a pipe, until they end."""
     console = Console()
     observers = (Progress(console),)
-    guards = (BudgetGuard(Budget(), Ledger(), budget),)
     say(_GREETING, "dim")
     heard = _Ear(console)
     with ExitStack() as stack:
         first = None
         if resume is not None:
             say(f"Going back to where {resume} was left ...", "dim")
-            session = Session.resume(resume, guards=guards, observers=observers)
+            session = Session.resume(resume, cap=budget, observers=observers)
         else:
             first = heard.next()
             if first is None:
                 raise typer.Exit(heard.code)
             config = EpisodeConfig.of(first, **settings)
             folder = stack.enter_context(run_folder(out, first))
-            session = Session.begin(
-                config, folder, record=record, guards=guards, observers=observers
-            )
+            session = Session.begin(config, folder, record=record, cap=budget, observers=observers)
             mark_latest(folder)
         kept = f"Kept in {session.folder}; go on with: adamo-vh chat --resume {session.folder}"
         stack.callback(say, kept)
         stack.enter_context(session)
-        check_price(session.config.model, session.model, budget)
         said = first or heard.next()
         while said is not None:
             _answer(session.say(said))

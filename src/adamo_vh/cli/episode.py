@@ -40,6 +40,7 @@ def run_and_show(
     **settings: Any,
 ) -> None:
     """Run an episode and print what happens, or one JSON object at the end."""
+    from adamo_vh.session.forecasting import refuse_early
     from adamo_vh.session.session import Session
 
     limits = Limits(max_steps=max_steps)
@@ -48,6 +49,7 @@ def run_and_show(
         limits = replace(limits, max_seconds=1e9)
     config = EpisodeConfig.of(instruction, limits=limits, **settings)
     observers: list[Observer] = [] if as_json else [Progress(Console())]
+    refuse_early(config, out)  # A film takes its file at once.
     with ExitStack() as stack:
         engine = None
         if video is not None:

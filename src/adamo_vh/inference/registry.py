@@ -71,9 +71,14 @@ def check_remote_uri(uri: str) -> None:
     Raises:
         ModelConfigError: It is not; lists what is known.
     """
-    prefix, _, rest = uri.partition(":")
-    if not rest or not (prefix == "openai" or _is_known_provider(prefix)):
+    if not is_remote(uri):
         raise ModelConfigError(f"Unknown model {public(uri)!r}. Known: {known_forms()}.")
+
+
+def is_remote(uri: str) -> bool:
+    """Whether a URI is written like that of a model behind a server."""
+    prefix, _, rest = uri.partition(":")
+    return bool(rest) and (prefix == "openai" or _is_known_provider(prefix))
 
 
 def create_local_model(uri: str, *, seed: int = 0) -> Model | None:

@@ -1,6 +1,8 @@
-"""What episodes will take with a model, said before any of them starts."""
+"""What episodes will take with a model, said or refused before any of them starts."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.cognition.budget import Budget
@@ -14,6 +16,8 @@ from adamo_vh.inference.cost.prices import cost_usd
 from adamo_vh.inference.cost.tokens import estimate_image, estimate_request, rule_for
 from adamo_vh.inference.model import Model, ModelKind, Usage
 from adamo_vh.inference.players.cassette import Cassette
+from adamo_vh.inference.registry import is_remote
+from adamo_vh.record.run_folder import check_unused
 from adamo_vh.session.bodies import instructions, open_server
 
 USUAL_CALLS = 4.67
@@ -62,15 +66,43 @@ def forecast_episodes(config: EpisodeConfig, engine: World, episodes: int = 1) -
     )
 
 
-def check_price(uri: str, model: Model, budget: Budget) -> None:
-    """Make sure that a budget of money can be kept, before anything is paid.
+def check_price(uri: str, budget: Budget, model: Model | None = None) -> None:
+    """Make sure that a budget of money can be kept, before anything is paid or written.
+
+    Args:
+        uri: Names the model.
+        budget: The caps.
+        model: The model itself, where it is there already; without it only the name is judged.
 
     Raises:
         ConfigError: No price is known for the model.
     """
-    is_paid = model.info.kind is ModelKind.VLM and not isinstance(model, Cassette)
-    if budget.usd is not None and is_paid and cost_usd(uri, Usage(1000, 1000)) is None:
+    if budget.usd is None:
+        return
+    if model is None:
+        is_paid = is_remote(uri)
+    else:
+        is_paid = model.info.kind is ModelKind.VLM and not isinstance(model, Cassette)
+    if is_paid and cost_usd(uri, Usage(1000, 1000)) is None:
         raise ConfigError(
             f"No price is known for {uri}, so that a budget of {budget.usd:g} US dollars cannot be "
             "kept. Put the model into the price table (prices.toml), or cap tokens or calls."
         )
+
+
+def refuse_early(config: EpisodeConfig, out: Path | None, cap: Budget | None = None) -> None:
+    """Refuse what can be told from the settings alone, before anything is made, asked or written.
+
+    Args:
+        config: The settings.
+        out: The run folder, if one is written.
+        cap: On all instructions together.
+
+    Raises:
+        ConfigError: A budget of money cannot be kept.
+        RecordError: The folder holds a run already.
+    """
+    check_price(config.model, config.budget)
+    check_price(config.model, cap or Budget())
+    if out is not None:
+        check_unused(out)

@@ -15,7 +15,7 @@ from typing import Self, TypedDict, Unpack
 from adamo_vh.action_server import Tool
 from adamo_vh.benchmark.tasks import Task
 from adamo_vh.cognition.agent import Agent, AgentConfig
-from adamo_vh.cognition.budget import Budget, BudgetGuard
+from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.cognition.guards import Guard
 from adamo_vh.cognition.memory.protocol import NewMemory
@@ -61,7 +61,7 @@ from adamo_vh.session.bodies import (
     own_engine,
     store_sources,
 )
-from adamo_vh.session.forecasting import check_price, forecast_episodes
+from adamo_vh.session.forecasting import check_price, forecast_episodes, refuse_early
 from adamo_vh.session.minds import fitting, opened_model, resumed_model
 from adamo_vh.session.repeating import Again, later
 
@@ -158,6 +158,7 @@ class Session:
         out: str | Path | None = None,
         *,
         record: bool = False,
+        cap: Budget | None = None,
         **parts: Unpack[Parts],
     ) -> Self:
         """Begin; nothing is said yet.
@@ -166,6 +167,7 @@ class Session:
             config: Scene, model, profile, limits: everything that can be written down.
             out: A new run folder for manifest, events, frames, result and page; none without.
             record: Also keep every request and reply of the model there, as a cassette.
+            cap: On all instructions together.
             **parts: What is handed in; see `Parts`.
 
         Raises:
@@ -177,10 +179,15 @@ class Session:
         if record and out is None:
             raise ConfigError("A recording needs a run folder: give out as well.")
         engine, model, tools = parts.get("engine"), parts.get("model"), parts.get("tools")
+        folder = None if out is None else Path(out)
+        if model is None:
+            # Also a probe is paid for.
+            refuse_early(config, folder, cap)
         with ExitStack() as stack:
             mind = opened_model(stack, config, model)
             if model is None:
-                check_price(config.model, mind, config.budget)
+                check_price(config.model, config.budget, mind)
+                check_price(config.model, cap or Budget(), mind)
             config = replace(
                 config,
                 model=mind.info.name if model is not None else config.model,
@@ -191,7 +198,7 @@ class Session:
                 config = as_said(config, world)
             check_task(config, world, parts.get("task"))
             manifest = describe(config, mind, world, parts)
-            writer, folder = None, None if out is None else Path(out)
+            writer = None
             if folder is not None:
                 lock = stack.enter_context(FolderLock(folder))
                 check_unused(folder)
@@ -201,6 +208,7 @@ class Session:
                 stack.callback(writer.close)
                 if record:
                     mind = taped(mind, folder / FOLDER)
+            parts = _capped(parts, cap)
             session = cls(manifest, world, mind, parts, writer=writer, folder=folder)
             session._closing.enter_context(stack.pop_all())
         return session
@@ -211,6 +219,7 @@ class Session:
         folder: str | Path,
         *,
         budget: Budget | None = None,
+        cap: Budget | None = None,
         **parts: Unpack[Parts],
     ) -> Self:
         """Go on in a run folder, in the state in which it was left.
@@ -222,6 +231,7 @@ class Session:
         Args:
             folder: A run folder.
             budget: Holds from now on, in place of the recorded one.
+            cap: On all instructions together, those on record too.
             **parts: What is handed in, as when it began; a model, to let another one go on.
 
         Raises:
@@ -247,10 +257,12 @@ class Session:
             mind = resumed_model(stack, path, manifest.config, recorded, parts.get("model"))
             if budget:
                 manifest = replace(manifest, config=replace(manifest.config, budget=budget))
-                check_price(manifest.config.model, mind, budget)
+            check_price(manifest.config.model, budget or Budget(), mind)
+            check_price(manifest.config.model, cap or Budget(), mind)
             world = opened(stack, manifest.config, parts.get("engine"), (path, manifest))
             writer = TrajectoryWriter(path, known=on_file, lock=lock)
             stack.callback(writer.close)
+            parts = _capped(parts, cap)
             session = cls(manifest, world, mind, parts, writer=writer, folder=path, known=known)
             session._closing.enter_context(stack.pop_all())
         try:
@@ -359,6 +371,12 @@ def describe(config: EpisodeConfig, model: Model, world: World, parts: Parts) ->
         engine=own_engine(world) if parts.get("engine") else "",
         labeling="" if tagger is None else type(tagger).__name__,
     )
+
+
+def _capped(parts: Parts, cap: Budget | None) -> Parts:
+    """The parts with a guard of what all instructions may take together."""
+    guards = (*parts.get("guards", ()), *((BudgetGuard(Budget(), Ledger(), cap),) if cap else ()))
+    return {**parts, "guards": guards}
 
 
 def read_unfinished(folder: Path) -> Trajectory:
