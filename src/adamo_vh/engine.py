@@ -92,6 +92,18 @@ class ObjectState:
 
 
 @dataclass(frozen=True, slots=True)
+class WorldSurface:
+    """A horizontal rectangle in the world that carries things."""
+
+    support: str
+    """Name that feedback and states use: "table", "shelf/top", "floor"."""
+    center: Vec3
+    half_x: float
+    half_y: float
+    yaw_rad: float
+
+
+@dataclass(frozen=True, slots=True)
 class FurnitureOutline:
     """A piece of furniture, which never moves, seen from above."""
 
@@ -101,6 +113,8 @@ class FurnitureOutline:
     bottom_m: float
     """Height of its lowest point: a lamp may hang over a table."""
     top_m: float
+    surfaces: tuple[WorldSurface, ...] = ()
+    """What it carries things on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +126,7 @@ class WorldState:
     """Ordered by id."""
     body: BodyState
     furniture: tuple[FurnitureOutline, ...] = ()
-    """For drawings of the room; no part of the hash. May be empty: not every engine knows."""
+    """For drawings and oracles; no part of the hash. May be empty: not every engine knows."""
 
     def object(self, object_id: int) -> ObjectState:
         """The object with an id.

@@ -23,9 +23,11 @@ from adamo_vh.report.whereabouts import Whereabouts
 def furnished() -> WorldState:
     """The tabletop with a table, a chair below it, a rug, a lamp and a picture."""
 
-    def piece(name: str, x: float, y: float, half: float, *heights: float) -> FurnitureOutline:
+    def piece(
+        name: str, x: float, y: float, half: float, low: float, high: float
+    ) -> FurnitureOutline:
         corners = ((x - half, y - half), (x + half, y - half), (x + half, y + half))
-        return FurnitureOutline(name, (*corners, (x - half, y + half)), *heights)
+        return FurnitureOutline(name, (*corners, (x - half, y + half)), low, high)
 
     pieces = (
         piece("lamp", 0.0, -1.0, 0.2, 2.1, 3.2),

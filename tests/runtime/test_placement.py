@@ -9,9 +9,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from adamo_vh.engine import WorldSurface
 from adamo_vh.geometry import Solid, Vec3, gaps
 from adamo_vh.runtime.placement import CLEARANCE_M, MAX_CORRECTION_M, free_spots, spread
-from adamo_vh.runtime.world import WorldSurface
 
 TABLE = WorldSurface("table", Vec3(0, 0, 0.78), 0.5, 0.8, 0.0)
 FLOOR = WorldSurface("floor", Vec3(0, 0, 0.0), 3.0, 3.0, 0.0)

@@ -20,6 +20,7 @@ from tests.fake_provider import FakeProvider, completion
 import adamo_vh
 from adamo_vh.action import Code, Feedback, Outcome, ToolSchema
 from adamo_vh.action_server import PAPER_TOOLS, Tool, ToolContext
+from adamo_vh.benchmark.conditions import Holds
 from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.memory.protocol import Memory
@@ -106,7 +107,7 @@ class Unasked:
 def test_a_task_without_its_objects_is_refused_before_the_first_call(
     engine: BuiltinEngine, tmp_path: Path
 ) -> None:
-    own = replace(TASKS[1], id="OWN", conditions=(replace(TASKS[1].conditions[0], id=999),))
+    own = replace(TASKS[1], id="OWN", conditions=(Holds(999),))
     with pytest.raises(ConfigError, match=r"OWN needs object 999.*'s1'"):
         run(engine, instruction=None, task=own, model=Unasked(), out=tmp_path / "run")
     assert not (tmp_path / "run").exists()

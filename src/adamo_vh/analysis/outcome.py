@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from adamo_vh import action
 from adamo_vh.analysis.claims import claims_success, names_a_gap
 from adamo_vh.benchmark.tasks import Task
-from adamo_vh.benchmark.tasks import task as find_task
+from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import EpisodeResult, Manifest
 from adamo_vh.errors import ConfigError, RecordError
 from adamo_vh.inference.model import ModelKind, Reply, Spent, Usage
@@ -160,7 +160,7 @@ def outcome_of(
         diagnosis: Class and code of the failure, if it was diagnosed.
     """
     config = manifest.config
-    asked = task or _built_in(config.task)
+    asked = task or _recorded(config)
     done = Counter(act.feedback.outcome for act in trajectory.acts)
     lost = [e.spent for e in trajectory.events if isinstance(e, Ended) and e.spent is not None]
     took: list[Reply | Spent] = [*(thought.reply for thought in trajectory.thoughts), *lost]
@@ -237,11 +237,9 @@ def _codec() -> TypeAdapter[Outcome]:
     return TypeAdapter(Outcome)
 
 
-def _built_in(task_id: str | None) -> Task | None:
-    if task_id is None:
-        return None
+def _recorded(config: EpisodeConfig) -> Task | None:
     try:
-        return find_task(task_id)
+        return config.scored_task
     except ConfigError:
         return None
 

@@ -1,20 +1,21 @@
-"""The checker: from the first and the last state of an episode to its two scores.
+"""The checker: from the states of an episode to its two scores.
 
 Pure functions over states: an episode whose states were recorded can be scored again at any time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+from adamo_vh.benchmark.conditions import MOVED_M, verdicts
 from adamo_vh.benchmark.overlap import penetration_m
 from adamo_vh.benchmark.tasks import Task
 from adamo_vh.engine import ObjectState, WorldState
 
-MOVED_M = 0.02
-"""An object whose centre went further than this was moved; less is settling."""
+__all__ = ["MOVED_M", "OVERLAP_M", "ConditionResult", "Score", "score"]
+
 OVERLAP_M = 0.005
 """Boxes that are deeper in each other than this overlap."""
 
@@ -41,13 +42,17 @@ class Score:
     """What speaks against a strict success: other things moved, overlaps, floating things."""
 
 
-def score(initial: WorldState, final: WorldState, task: Task) -> Score:
-    """Score an episode by its first and last state.
+def score(
+    initial: WorldState, final: WorldState, task: Task, between: Sequence[WorldState] = ()
+) -> Score:
+    """Score an episode by its states.
 
     Args:
         initial: The world when the episode began.
         final: The same world when it ended; a condition on what was taken out of it is not met.
         task: What was asked for.
+        between: The states after each step, in order; a task that `needs_history` is judged by
+            them, no other one is.
 
     Returns:
         Both scores and what they rest on.
@@ -55,12 +60,9 @@ def score(initial: WorldState, final: WorldState, task: Task) -> Score:
     Raises:
         KeyError: The task names an object that the world never had.
     """
-    there = {item.id for item in final.objects}
-    # What somebody has taken out of the room meanwhile is nowhere.
-    taken = {item.id for item in initial.objects} - there
     results = tuple(
-        ConditionResult(str(c), not c.objects & taken and c.satisfied(final))
-        for c in task.conditions
+        ConditionResult(text, is_so)
+        for text, is_so in verdicts(task.conditions, final, (initial, *between))
     )
     completion = sum(result.satisfied for result in results) / len(results)
     violations = (

@@ -1,6 +1,6 @@
 """Free spots for the oracle to put things: candidates from the world's state, best first.
 
-The state knows objects but no furniture, so a candidate is a good guess that the engine may still
+The state knows little of the furniture, so a candidate is a good guess that the engine may still
 correct. Each function takes the object to be put down, which keeps the turn that it has now.
 """
 
@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo_vh.engine import BodyInfo, ObjectState, WorldState
+from adamo_vh.engine import BodyInfo, ObjectState, WorldState, WorldSurface
 from adamo_vh.geometry import Array, Solid, Vec3, gaps
 
 _WITHIN_REACH_M = 0.05
@@ -26,16 +26,26 @@ _INWARD_WEIGHT = 0.8
 _FLOOR_GAP_M = 0.05
 _WALL_GAP_M = 0.10
 _NO_DIRECTION_M = 0.02
+_EDGE_M = 0.02
+_STEP_M = 0.06
 
 
-def near_spots(state: WorldState, item: ObjectState, anchor: ObjectState) -> list[Vec3]:
+def near_spots(
+    state: WorldState, item: ObjectState, anchor: ObjectState, most_m: float = NEAR_MAX_M
+) -> list[Vec3]:
     """Spots on the anchor's surface, close to it.
 
     Free ones come first; among these, spots beside the anchor as the body sees it, which are as
     far from the edge and from the body as the anchor is, and spots towards the other objects of
     the surface, which are surely not beyond its edge; then the closest.
+
+    Args:
+        state: The world now.
+        item: The object to be put down.
+        anchor: What it is to be put near.
+        most_m: Greatest distance between their centres.
     """
-    angles, distances = _polar(np.arange(0.0, 360.0, 5.0), np.linspace(0.04, NEAR_MAX_M, 12))
+    angles, distances = _polar(np.arange(0.0, 360.0, 5.0), np.linspace(0.04, most_m, 12))
     center, surface_z = _plan(anchor.box.center), anchor.box.bottom_z
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     points = center + directions * distances[:, None]
@@ -93,6 +103,20 @@ def area_spots(state: WorldState, item: ObjectState, kind: str) -> list[Vec3]:
         free = _gaps(points, state, item, 0.0) > _FLOOR_GAP_M
         spots += [_point(p, 0.0) for p in points[free & _inside(points, state, item)]]
     return spots
+
+
+def surface_spots(state: WorldState, item: ObjectState, surface: WorldSurface) -> list[Vec3]:
+    """Spots on a piece of furniture: free ones first, then those nearest to the body."""
+    margin = item.box.radius_m + _EDGE_M
+    sides = (max(half - margin, 0.0) for half in (surface.half_x, surface.half_y))
+    steps = [np.linspace(-side, side, 2 + int(side / _STEP_M)) for side in sides]
+    grid = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 2)
+    cos, sin = math.cos(surface.yaw_rad), math.sin(surface.yaw_rad)
+    points = _plan(surface.center) + grid @ np.array([[cos, sin], [-sin, cos]])
+    apart = _gaps(points, state, item, surface.center.z)
+    distances = np.hypot(*(points - _plan(state.body.position)).T)
+    order = np.lexsort((distances, -np.minimum(apart, FREE_M)))
+    return [_point(points[i], surface.center.z) for i in order if apart[i] > 0]
 
 
 def _gaps(points: Array, state: WorldState, item: ObjectState, surface_z: float) -> Array:

@@ -2,6 +2,18 @@
 
 A task is decomposed into the units that its prompt spells out: actions, references and relations.
 Its C-D level is the sum of their costs. Walking and looking are implicit and cost nothing.
+
+The paper's twelve units and their costs stand as it prints them. Those for what its tasks do not
+ask for follow from them:
+
+- material 2: seen, not named, like a shape, and shared by many things like one.
+- negation 2: a reference that leaves something out is a group filtered by one criterion.
+- furniture 2: a place at another named thing, like near.
+- level 3: that, and which board of it.
+- side 3: near, and in a frame of reference.
+- order 2: every step after the first depends on the one before it.
+- choice 1: which of several is done must be decided, as little as which floor.
+- kept 1: what must not be is one more thing to heed, wherever it is.
 """
 
 from __future__ import annotations
@@ -33,6 +45,10 @@ class Ref(StrEnum):
     PATTERN = "attrPattern"
     SUPER_EXTREMUM = "superExtremum"
     """A superlative over an attribute ("the smallest ...")."""
+    MATERIAL = "attrMaterial"
+    """What it is made of."""
+    NEGATION = "negation"
+    """What it is not ("the battery that is not green")."""
 
 
 class Rel(StrEnum):
@@ -43,6 +59,18 @@ class Rel(StrEnum):
     """Near another object."""
     AREA = "area"
     """Within a designated area; includes that the area is on the floor."""
+    FURNITURE = "furniture"
+    """On a named piece of furniture."""
+    LEVEL = "level"
+    """On a named level of a piece of furniture."""
+    SIDE = "side"
+    """Left or right of another object."""
+    ORDER = "order"
+    """After something else was done; once for every step but the first."""
+    CHOICE = "choice"
+    """This or that."""
+    KEPT = "kept"
+    """What must not be at the end, or must stay as it is."""
 
 
 Unit = Act | Ref | Rel
@@ -61,6 +89,14 @@ COSTS: Mapping[Unit, int] = MappingProxyType(
         Rel.FLOOR: 1,
         Rel.PROX: 2,
         Rel.AREA: 4,
+        Ref.MATERIAL: 2,
+        Ref.NEGATION: 2,
+        Rel.FURNITURE: 2,
+        Rel.LEVEL: 3,
+        Rel.SIDE: 3,
+        Rel.ORDER: 2,
+        Rel.CHOICE: 1,
+        Rel.KEPT: 1,
     }
 )
 

@@ -9,7 +9,7 @@ from adamo_vh.action_server import LocalActionServer
 from adamo_vh.benchmark.checkers import Score, score
 from adamo_vh.benchmark.conditions import Condition
 from adamo_vh.benchmark.oracle import Oracle
-from adamo_vh.benchmark.tasks import TASKS, Task
+from adamo_vh.benchmark.tasks import Task, builtin_tasks
 from adamo_vh.engine import World
 from adamo_vh.perception import Labeling, PerceptionConfig, Tagger
 
@@ -38,14 +38,14 @@ class Verification:
 
 
 def verify_tasks(
-    engine: World, labeling: Labeling, tasks: Sequence[Task] = TASKS
+    engine: World, labeling: Labeling, tasks: Sequence[Task] | None = None
 ) -> Iterator[Verification]:
-    """Play oracle and idle for tasks, one after another."""
-    for task in tasks:
+    """Play oracle and idle for tasks, the built-in ones by default, one after another."""
+    for task in builtin_tasks() if tasks is None else tasks:
         engine.reset(0)
         start = engine.state()
         idle = score(start, start, task)
-        played = play_oracle(engine, labeling, task, task.conditions)
+        played = play_oracle(engine, labeling, task, task.goals)
         yield Verification(
             engine.scene.name,
             labeling,
@@ -75,9 +75,11 @@ def play_oracle(engine: World, labeling: Tagger, task: Task, goals: Sequence[Con
     )
     oracle = Oracle(goals, server.tag, server.body.info)
     server.observe()
+    states = [start]
     for _ in range(MAX_STEPS):
-        action = oracle.next_action(engine.state(), server.seen)
+        action = oracle.next_action(states[-1], server.seen)
         if action is None:
             break
         server.execute(action)
-    return score(start, engine.state(), task)
+        states.append(engine.state())
+    return score(start, states[-1], task, states[1:])

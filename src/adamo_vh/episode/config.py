@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypedDict, TypeVar, Unpack
 
-from adamo_vh.benchmark.tasks import Task
+from adamo_vh.benchmark.tasks import Task, builtin_tasks, check_id
 from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.profile import PAPER, Profile
@@ -25,6 +25,7 @@ class Settings(TypedDict, total=False):
     """The settings as people write them; what they mean stands at `EpisodeConfig`."""
 
     task: str | Task | None
+    """Id of a built-in task, path of a task file, or a task."""
     scene: str
     figure: str
     labeling: str | Tagger
@@ -59,7 +60,7 @@ class EpisodeConfig:
     instruction: str
     """What the agent is told."""
     task: str | None = None
-    """Id of the benchmark task that the instruction comes from; decides the checker."""
+    """Id of the task that the instruction comes from; decides the checker."""
     scene: str = "s1"
     """Built-in scene or path of a scene file."""
     figure: str = "mara"
@@ -86,6 +87,8 @@ class EpisodeConfig:
     sampling: Sampling = field(default=Sampling())
     limits: Limits = field(default=Limits())
     budget: Budget = field(default=Budget())
+    own_task: Task | None = None
+    """The task, if it is no built-in one: so the record holds all that it is scored by."""
 
     def __post_init__(self) -> None:
         """Refuse what no episode can be played with."""
@@ -111,6 +114,17 @@ class EpisodeConfig:
                 raise ConfigError(f"{name} is {value}: use 0 to {most:g}.")
         if _whole("max_tokens", sampling.max_tokens) < 1:
             raise ConfigError(f"max_tokens is {sampling.max_tokens}: use a whole number from 1.")
+
+    @property
+    def scored_task(self) -> Task | None:
+        """What is scored; None for a free instruction.
+
+        Raises:
+            ConfigError: There is no such task.
+        """
+        if self.own_task is not None or self.task is None:
+            return self.own_task
+        return find_task(self.task)
 
     @classmethod
     def of(cls, instruction: str | None = None, **settings: Unpack[AllSettings]) -> EpisodeConfig:
@@ -142,9 +156,11 @@ class EpisodeConfig:
         if task is not None:
             if instruction is not None:
                 raise ConfigError("Give an instruction or a task, not both.")
-            return cls(task.prompt, task=task.id, **read)
+            check_id(task)
+            own = None if task in builtin_tasks() else task
+            return cls(task.prompt, task=task.id, own_task=own, **read)
         if instruction is None:
-            raise ConfigError("Say what to do, or name a task (T1 to T15).")
+            raise ConfigError("Say what to do, or name a task (T1 to T15, or a task file).")
         return cls(instruction, **read)
 
 

@@ -13,8 +13,6 @@ from typing import Any, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from adamo_vh.benchmark.checkers import ConditionResult, Score, score
-from adamo_vh.benchmark.tasks import Task
-from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.engine import WorldState, supporting_object
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import FileError, RecordError
@@ -27,6 +25,7 @@ from adamo_vh.record.old_format import OLD_FORMAT, upgraded_result
 from adamo_vh.record.run_folder import FORMAT, MANIFEST, RESULT, check_begun, read_head
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Trajectory
+from adamo_vh.record.witness import states_between
 
 _MOST_BYTES = 50_000_000
 _T = TypeVar("_T")
@@ -164,7 +163,6 @@ def summarise(
     trajectory: Trajectory,
     final: WorldState,
     run: Path | None,
-    task: Task | None = None,
 ) -> EpisodeResult:
     """Score and count an episode that has ended: a pure function over its records.
 
@@ -173,19 +171,16 @@ def summarise(
         trajectory: What happened.
         final: The world at its end.
         run: The run folder.
-        task: What was asked for, if the task is no built-in one.
 
     Raises:
-        RecordError: The trajectory has no end.
-        ConfigError: The task is no built-in one, and was not given.
+        RecordError: The trajectory has no end, or lacks states that the task asks for.
+        ConfigError: There is no such task.
     """
     ended = trajectory.ended
     if ended is None:
         raise RecordError("The episode has not ended; it cannot be scored.")
     config = manifest.config
-    scored = None
-    if config.task is not None and ended.reason.is_scored:
-        scored = score(manifest.initial, final, task or find_task(config.task))
+    scored = judged(manifest, trajectory, final) if ended.reason.is_scored else None
     thoughts = trajectory.thoughts
     replies = [thought.reply for thought in thoughts]
     answers: list[Reply | Spent] = [*replies, *trajectory.lost]
@@ -222,6 +217,25 @@ def summarise(
         state_hash=ended.state_hash,
         final=final,
     )
+
+
+def judged(manifest: Manifest, trajectory: Trajectory, final: WorldState) -> Score | None:
+    """The score of an episode that has ended, by today's checkers; None without a task.
+
+    Args:
+        manifest: How it was set up, with its first state.
+        trajectory: What happened, with the states between where the task asks for them.
+        final: The world at its end.
+
+    Raises:
+        RecordError: The record lacks states that the task asks for.
+        ConfigError: There is no such task.
+    """
+    task = manifest.config.scored_task
+    if task is None:
+        return None
+    between = states_between(trajectory, manifest.initial) if task.needs_history else ()
+    return score(manifest.initial, final, task, between)
 
 
 def total_cost(answers: Sequence[Reply | Spent]) -> float | None:

@@ -13,10 +13,17 @@ from typing import Annotated, Any, Literal, Protocol
 from pydantic import Field, TypeAdapter, ValidationError
 
 from adamo_vh.action import Feedback
-from adamo_vh.engine import WorldEvent
+from adamo_vh.engine import ObjectState, WorldEvent
 from adamo_vh.errors import RecordError
 from adamo_vh.inference.model import Reply, Spent
-from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
+from adamo_vh.observation import (
+    AgentState,
+    BodyState,
+    Frame,
+    Observation,
+    ObservedObject,
+    ReferencePoint,
+)
 from adamo_vh.record.old_format import OLD_FORMAT, upgraded_event
 from adamo_vh.record.run_folder import EVENTS, read_head
 from adamo_vh.record.termination import TerminationReason
@@ -146,7 +153,21 @@ class Lost:
     type: Literal["lost"] = "lost"
 
 
-Event = Started | Observed | Thought | Acted | LeftOut | Shown | Happened | Lost | Ended
+@dataclass(frozen=True, slots=True)
+class Stood:
+    """How the world stood after a step; kept where a task asks what came first. Privileged."""
+
+    step: int
+    changed: tuple[ObjectState, ...]
+    """Objects that are otherwise than before the step, or were not there."""
+    gone: tuple[int, ...]
+    """Ids of the objects that are not there any more."""
+    body: BodyState
+    state_hash: str
+    type: Literal["stood"] = "stood"
+
+
+Event = Started | Observed | Thought | Acted | LeftOut | Shown | Happened | Stood | Lost | Ended
 
 
 class Observer(Protocol):

@@ -10,8 +10,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from adamo_vh.engine import WorldSurface
 from adamo_vh.geometry import Array, Solid, Vec3, gaps
-from adamo_vh.runtime.world import WorldSurface
 
 CLEARANCE_M = 0.010
 """Gap kept from everything that stands beside the spot."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo_vh.engine import FLOOR, FurnitureOutline
+from adamo_vh.engine import FLOOR, FurnitureOutline, WorldSurface
 from adamo_vh.geometry import Box, Quaternion, Solid, Vec3
 from adamo_vh.observation import NOTHING
 from adamo_vh.runtime.assets.asset import Asset, Collider
@@ -43,18 +43,6 @@ class WorldObject:
     """First of its 6 velocity coordinates."""
     geoms: tuple[int, ...]
     """Those that collide."""
-
-
-@dataclass(frozen=True, slots=True)
-class WorldSurface:
-    """A horizontal rectangle in the world that carries things."""
-
-    support: str
-    """Name that feedback and states use: "table", "shelf/top", "floor"."""
-    center: Vec3
-    half_x: float
-    half_y: float
-    yaw_rad: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,6 +285,7 @@ def _seen_from_above(piece: Furniture, asset: Asset) -> FurnitureOutline:
         tuple((float(x), float(y)) for x, y in corners),
         float(heights.min()),
         float(heights.max()),
+        tuple(furniture_surfaces(piece, asset)),
     )
 
 

@@ -13,8 +13,6 @@ from typing import cast
 from adamo_vh.action import Code, action_name
 from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS, LocalActionServer, Tool
 from adamo_vh.benchmark.conditions import NEAR_M
-from adamo_vh.benchmark.tasks import Task
-from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.cognition.instructions import system_prompt
 from adamo_vh.engine import World, acting_body
 from adamo_vh.episode.config import EpisodeConfig
@@ -121,19 +119,31 @@ def store_sources(folder: Path, config: EpisodeConfig, world: World) -> None:
         write_whole(folder / SCRIPT, Path(path).read_bytes())
 
 
-def check_task(config: EpisodeConfig, world: World, own: Task | None) -> None:
+def check_task(config: EpisodeConfig, world: World) -> None:
     """Make sure that a scene has what a task is about.
 
     Raises:
         ConfigError: It has not, or the task is unknown.
     """
-    if own is None and config.task is None:
+    task = config.scored_task
+    if task is None:
         return
-    task = own or find_task(config.task or "")
+    if task.scenes and world.scene.name not in task.scenes:
+        raise ConfigError(
+            f"Task {task.id} is for scene {', '.join(task.scenes)}, not for {world.scene.name!r}. "
+            "Choose one of these, or take the scenes out of the task."
+        )
     lacking = sorted(task.objects - set(world.object_names))
     areas = sorted(task.areas - {area.kind for area in world.scene.areas})
-    if lacking or areas:
-        what = [*(f"object {number}" for number in lacking), *(f"a {kind}" for kind in areas)]
+    carriers = {s.support for piece in world.state().furniture for s in piece.surfaces}
+    known = carriers | {support.partition("/")[0] for support in carriers}
+    surfaces = sorted(task.surfaces - known) if known else []
+    if lacking or areas or surfaces:
+        what = [
+            *(f"object {number}" for number in lacking),
+            *(f"a {kind}" for kind in areas),
+            *(f"a place called {name!r}" for name in surfaces),
+        ]
         raise ConfigError(
             f"Task {task.id} needs {', '.join(what)}, which scene {world.scene.name!r} does not "
             "have. Choose another task or scene, or give an instruction instead."

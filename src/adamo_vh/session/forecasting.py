@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.forecast import Forecast, forecast
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
@@ -53,9 +52,8 @@ def forecast_episodes(config: EpisodeConfig, engine: World, episodes: int = 1) -
     # A profile that keeps only the last pictures does not add any.
     looks = 0.0 if profile.pictures else _LOOKS_PER_CALL
     picture = looks * estimate_image(*config.resolution, rule)
-    calls = USUAL_CALLS
-    if config.task is not None:
-        calls = 1.0 + find_task(config.task).computed.act
+    task = config.scored_task
+    calls = USUAL_CALLS if task is None else 1.0 + task.computed.act
     return forecast(
         config.model,
         calls_expected=calls,

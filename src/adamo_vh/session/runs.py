@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Unpack
 
 from adamo_vh.action_server import Tool
-from adamo_vh.benchmark.tasks import Task
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.guards import Guard
 from adamo_vh.cognition.memory.protocol import NewMemory
@@ -67,7 +66,7 @@ def run_episode(
         RecordError: `out` already holds an episode, or somebody else writes it.
         FileError: `out` cannot be written.
     """
-    task, labeling = settings.get("task"), settings.get("labeling")
+    labeling = settings.get("labeling")
     config = _config(instruction, model, settings)
     with Session.begin(
         config,
@@ -77,7 +76,6 @@ def run_episode(
         model=None if isinstance(model, str) else model,
         tools=tools,
         memory=memory,
-        task=task if isinstance(task, Task) else None,
         labeling=None if isinstance(labeling, str) else labeling,
         guards=guards,
         observers=observers,

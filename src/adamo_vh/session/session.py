@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Self, TypedDict, Unpack
 
 from adamo_vh.action_server import Tool
-from adamo_vh.benchmark.tasks import Task
 from adamo_vh.cognition.agent import Agent, AgentConfig
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.forecast import Forecast
@@ -46,9 +45,11 @@ from adamo_vh.record.trajectory import (
     Event,
     Lost,
     Observer,
+    Stood,
     Trajectory,
     read_trajectory,
 )
+from adamo_vh.record.witness import Witness
 from adamo_vh.record.writer import TrajectoryWriter
 from adamo_vh.report.page import try_page
 from adamo_vh.session.bodies import (
@@ -84,8 +85,6 @@ class Parts(TypedDict, total=False):
     """Makes and reads the tags."""
     memory: NewMemory | None
     """Makes the memory, in place of the short-term memory."""
-    task: Task | None
-    """What is scored."""
     guards: Sequence[Guard]
     """Further reasons to stop."""
     observers: Sequence[Observer]
@@ -134,7 +133,14 @@ class Session:
         server = open_server(config, world, parts.get("tools"), tagger)
         prompt = instructions(config, world, server, tagger)
         memory = parts.get("memory") or ShortTermMemory
-        self._happening = Again(known, self.apply, self._lose)
+        task, heard = config.scored_task, [e for e in known if not isinstance(e, Stood)]
+        records: Sequence[Observer] = (
+            *((writer,) if writer else ()),
+            *later((self._trajectory,), len(known)),
+        )
+        if task is not None and task.needs_history:
+            records = (Witness(records, world.state),)
+        self._happening = Again(heard, self.apply, self._lose)
         self._agent = Agent(
             model,
             server,
@@ -142,13 +148,9 @@ class Session:
             AgentConfig(config.profile, config.k, config.text_form, config.sampling, config.limits),
             memory=memory(prompt, config.k, config.profile, config.text_form),
             guards=(BudgetGuard(config.budget), *parts.get("guards", ())),
-            records=(
-                *((writer,) if writer else ()),
-                *later((self._trajectory,), len(known)),
-                self._happening,
-            ),
-            observers=later(parts.get("observers", ()), len(known)),
-            known=known,
+            records=(*records, self._happening),
+            observers=later(parts.get("observers", ()), len(heard)),
+            known=heard,
         )
 
     @classmethod
@@ -196,7 +198,7 @@ class Session:
             world = opened(stack, config, engine)
             if engine is not None:
                 config = as_said(config, world)
-            check_task(config, world, parts.get("task"))
+            check_task(config, world)
             manifest = describe(config, mind, world, parts)
             writer = None
             if folder is not None:
@@ -330,8 +332,7 @@ class Session:
             RecordError: The last instruction has not ended.
         """
         final = _last_state(self.engine, self.manifest)
-        task = self._parts.get("task")
-        result = summarise(self.manifest, self._trajectory, final, self.folder, task)
+        result = summarise(self.manifest, self._trajectory, final, self.folder)
         if self.folder is not None:
             try:
                 write_record(self.folder, RESULT, result)

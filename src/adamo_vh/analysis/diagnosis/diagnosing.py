@@ -12,7 +12,6 @@ from adamo_vh.analysis.diagnosis.refusals import is_refused
 from adamo_vh.analysis.diagnosis.sight import sight_of
 from adamo_vh.analysis.diagnosis.story import Story, call_text, quoted, several, story_of
 from adamo_vh.benchmark.tasks import Task
-from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.engine import World
 from adamo_vh.episode.result import EpisodeResult, Manifest
 from adamo_vh.perception import Tagger
@@ -41,7 +40,7 @@ def diagnose(
         trajectory: What happened.
         result: What came of it; None if it did not get that far.
         world: Of the same scene and variation; is left in another state.
-        task: What was asked, if the task is no built-in one.
+        task: What was asked, in place of what the record says.
         labeling: Makes and reads the tags, if it was handed in.
 
     Returns:
@@ -50,12 +49,13 @@ def diagnose(
 
     Raises:
         EngineError: A saved state is damaged, or of another scene.
-        ConfigError: The task is no built-in one, and was not given.
+        ConfigError: There is no such task.
     """
     if (nothing := _nothing_to_say(manifest, result)) is not None:
         return nothing
     assert result is not None
-    asked = task or find_task(manifest.config.task or "")
+    asked = task or manifest.config.scored_task
+    assert asked is not None
     story = story_of(manifest, trajectory, result, world, asked, labeling)
     if story is None:
         return Diagnosis(None, None, "The record has no first view or no end: nothing can be told.")

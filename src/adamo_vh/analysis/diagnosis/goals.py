@@ -19,7 +19,8 @@ from adamo_vh.analysis.diagnosis.refusals import is_refused, refusal, streak
 from adamo_vh.analysis.diagnosis.sight import on_text
 from adamo_vh.analysis.diagnosis.story import DROP, PICK, Moment, Story, call_text
 from adamo_vh.benchmark.checkers import MOVED_M
-from adamo_vh.benchmark.conditions import Condition
+from adamo_vh.benchmark.conditions import Aim, Condition, counted, holds
+from adamo_vh.benchmark.goals import open_goals
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Acted
 
@@ -29,16 +30,37 @@ _BACK_M = 0.15
 
 def causes(story: Story) -> list[Cause]:
     """One cause for each condition that is not met at the end, in the order of the task."""
-    results = story.result.conditions
-    pairs = zip(story.task.conditions, results, strict=True)
-    return [
-        _cause(story, condition, number)
+    pairs = zip(counted(story.task.conditions), story.result.conditions, strict=True)
+    found = [
+        _cause_of(story, condition, number)
         for number, (condition, result) in enumerate(pairs)
         if not result.satisfied
     ]
+    return [cause for cause in found if cause is not None]
 
 
-def _cause(story: Story, condition: Condition, number: int) -> Cause:
+def _cause_of(story: Story, condition: Condition, number: int) -> Cause | None:
+    """The cause by where one object is; None for what only waits for the others."""
+    states = [moment.state for moment in story.moments]
+    *past, end = states
+    if holds(condition, end, past):
+        if not isinstance(condition, Aim):
+            return None
+        text = f"{story.name(condition.id)} was put as asked before what was to come first."
+        step = next(m.step for m in story.moments if holds(condition, m.state, past[:1]))
+        return Cause(Code.WRONG_ORDER, step, text, condition.id)
+    if isinstance(condition, Aim):
+        return _cause(story, condition, number)
+    for goal in open_goals(condition, end, past):
+        if isinstance(goal.condition, Aim) and not goal.is_undoing:
+            return _cause(story, goal.condition, number)
+    kept = [i for i, state in enumerate(states) if holds(condition, state, states[:i])]
+    broken = story.moments[min((kept[-1] if kept else 0) + 1, len(states) - 1)]
+    text = f"After step {broken.step} it was no longer as asked: {condition}."
+    return Cause(Code.EXTRA_GOAL, broken.step, text)
+
+
+def _cause(story: Story, condition: Aim, number: int) -> Cause:
     undone = _undone(story, condition)
     loop = loop_of(story)
     if undone is not None:
@@ -48,9 +70,9 @@ def _cause(story: Story, condition: Condition, number: int) -> Cause:
     return _never_held(story, condition, number)
 
 
-def _undone(story: Story, condition: Condition) -> Cause | None:
+def _undone(story: Story, condition: Aim) -> Cause | None:
     """Whether it was met once, and by which step it was undone."""
-    met = [m for m in story.moments if _is_met(condition, m)]
+    met = [m for m in story.moments if _is_met(story, condition, m)]
     if not met:
         return None
     after = story.moments[story.moments.index(met[-1]) + 1 :]
@@ -67,12 +89,12 @@ def _undone(story: Story, condition: Condition) -> Cause | None:
     return Cause(code, act.step, text, condition.id)
 
 
-def _is_met(condition: Condition, moment: Moment) -> bool:
+def _is_met(story: Story, condition: Aim, moment: Moment) -> bool:
     here = {item.id for item in moment.state.objects}
-    return condition.objects <= here and condition.satisfied(moment.state)
+    return condition.objects <= here and condition.satisfied(moment.state, (story.start,))
 
 
-def _handled(story: Story, condition: Condition, loop: Cause | None) -> Cause:
+def _handled(story: Story, condition: Aim, loop: Cause | None) -> Cause:
     """The object was in the hand, and is not where it belongs."""
     if loop is not None and loop_moves(story, loop):
         return loop
@@ -84,7 +106,7 @@ def _handled(story: Story, condition: Condition, loop: Cause | None) -> Cause:
     return _still_held(story, condition, loop)
 
 
-def _anchor_moved(story: Story, condition: Condition, moment: int) -> Cause | None:
+def _anchor_moved(story: Story, condition: Aim, moment: int) -> Cause | None:
     """Whether it would be met, had the agent left the anchor alone."""
     anchor = anchor_of(condition)
     if anchor is None or not story.held_at(anchor):
@@ -94,14 +116,14 @@ def _anchor_moved(story: Story, condition: Condition, moment: int) -> Cause | No
         return None
     state = story.moments[moment].state
     objects = tuple(first if item.id == anchor else item for item in state.objects)
-    if not condition.satisfied(replace(state, objects=objects)):
+    if not condition.satisfied(replace(state, objects=objects), (story.start,)):
         return None
     step = story.moments[story.held_at(anchor)[0]].step
     text = f"{story.name(anchor)} was taken from its place, and was to stay there."
     return Cause(Code.EXTRA_GOAL, step, text, condition.id, anchor)
 
 
-def _still_held(story: Story, condition: Condition, loop: Cause | None) -> Cause:
+def _still_held(story: Story, condition: Aim, loop: Cause | None) -> Cause:
     """The object is in the hand at the end, and was to be put down."""
     taken = story.moments[story.held_at(condition.id)[-1]]
     first = story.moments[story.held_at(condition.id)[0]]
@@ -124,7 +146,7 @@ def _still_held(story: Story, condition: Condition, loop: Cause | None) -> Cause
     return Cause(Code.NOT_RELEASED, taken.step, text, condition.id)
 
 
-def _never_held(story: Story, condition: Condition, number: int) -> Cause:
+def _never_held(story: Story, condition: Aim, number: int) -> Cause:
     """The object never was in the hand."""
     found = [*_wrong_objects(story, condition), *_refused_picks(story, condition)]
     if found:
@@ -132,7 +154,7 @@ def _never_held(story: Story, condition: Condition, number: int) -> Cause:
     return protocol_cause(story) or untouched(story, condition.id, number)
 
 
-def _wrong_objects(story: Story, condition: Condition) -> list[Cause]:
+def _wrong_objects(story: Story, condition: Aim) -> list[Cause]:
     """What was taken and is not asked for: the first, or the one that was put as this one should.
 
     What the task wants moved for another condition is no mistake.
@@ -142,7 +164,9 @@ def _wrong_objects(story: Story, condition: Condition) -> list[Cause]:
         return []
     end = story.moments[-1]
     as_asked = [
-        (i, x) for i, x in handled if end.object(x) and _is_met(with_object(condition, x), end)
+        (i, x)
+        for i, x in handled
+        if end.object(x) and _is_met(story, with_object(condition, x), end)
     ]
     i, taken = (as_asked or handled)[0]
     step, asked, other = story.moments[i].step, story.name(condition.id), story.name(taken)
@@ -153,7 +177,7 @@ def _wrong_objects(story: Story, condition: Condition) -> list[Cause]:
     return [Cause(Code.WRONG_OBJECT, step, text, condition.id, taken)]
 
 
-def _refused_picks(story: Story, condition: Condition) -> list[Cause]:
+def _refused_picks(story: Story, condition: Aim) -> list[Cause]:
     """Refused Picks that may have been meant for this object, unless it was still taken."""
     found: list[Cause] = []
     for act in story.acts:
@@ -170,7 +194,7 @@ def _refused_picks(story: Story, condition: Condition) -> list[Cause]:
     return found[-1:]
 
 
-def _refused_pick(story: Story, condition: Condition, act: Acted) -> Cause:
+def _refused_pick(story: Story, condition: Aim, act: Acted) -> Cause:
     cause = refusal(story, act, condition.id)
     held = story.moments[[m.step for m in story.moments].index(act.step)].state.body.held
     is_kept = held is not None and held == story.final.body.held and held in story.task.targets

@@ -11,7 +11,7 @@ from adamo_vh.analysis.diagnosis.cause import Cause
 from adamo_vh.analysis.diagnosis.finding import Code
 from adamo_vh.analysis.diagnosis.sight import on_text
 from adamo_vh.analysis.diagnosis.story import Putting, Story
-from adamo_vh.benchmark.conditions import NEAR_M, Condition, Holds, InArea, Near, OnFloor
+from adamo_vh.benchmark.conditions import NEAR_M, Aim, Beside, Holds, InArea, Near, OnFloor
 from adamo_vh.engine import FLOOR, ObjectState
 from adamo_vh.geometry import Solid, gaps
 
@@ -21,7 +21,7 @@ _ELSEWHERE = 2.5
 """So many times the limit away from its anchor, a thing beside another one was put to that one."""
 
 
-def misplaced(story: Story, condition: Condition, putting: Putting) -> Cause:
+def misplaced(story: Story, condition: Aim, putting: Putting) -> Cause:
     """Why a condition is not met by where its object was put last."""
     item, step = putting.item, putting.step
     name, place = story.name(item.id), on_text(item, story)
@@ -133,11 +133,11 @@ def _from_area_m(story: Story, item: ObjectState, kind: str) -> float:
     return min(distances, default=float("inf"))
 
 
-def with_object(condition: Condition, object_id: int) -> Condition:
+def with_object(condition: Aim, object_id: int) -> Aim:
     """The same condition of another object."""
     return replace(condition, id=object_id)
 
 
-def anchor_of(condition: Condition) -> int | None:
+def anchor_of(condition: Aim) -> int | None:
     """The object that a condition is relative to; None if there is none."""
-    return condition.anchor if isinstance(condition, Near) else None
+    return condition.anchor if isinstance(condition, Near | Beside) else None

@@ -220,7 +220,7 @@ def story_of(
     steps: list[Acted | None] = [None, *trajectory.acts]
     saved = tuple(began.saved if act is None else act.saved for act in steps)
     views = tuple(e for e in trajectory.events if isinstance(e, Observed))
-    moments = []
+    moments: list[Moment] = []
     for act, kept in zip(steps, saved, strict=True):
         server.load(kept)
         step, state = act.step if act else 0, world.state()
@@ -228,7 +228,9 @@ def story_of(
         tags = (item.tag for view in views if view.step <= step for item in view.objects)
         told = {reads.resolve(tag, world.object_names) for tag in tags}
         seen = server.seen.union(number for number in told if number is not None)
-        moments.append(Moment(step, act, state, seen, calls_left(task.conditions, state, seen)))
+        past = [moment.state for moment in moments]
+        left = calls_left(task.conditions, state, seen, past)
+        moments.append(Moment(step, act, state, seen, left))
     return Story(
         task,
         manifest,

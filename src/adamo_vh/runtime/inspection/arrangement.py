@@ -12,17 +12,12 @@ from itertools import combinations
 
 import numpy as np
 
-from adamo_vh.engine import FLOOR
+from adamo_vh.engine import FLOOR, WorldSurface
 from adamo_vh.geometry import Solid, Vec3, gaps
 from adamo_vh.runtime.assets.asset import Asset
 from adamo_vh.runtime.inspection.finding import SceneFinding, bounded, error, warning
 from adamo_vh.runtime.scenes.scene import PlacedObject, Scene
-from adamo_vh.runtime.world import (
-    WorldSurface,
-    furniture_solids,
-    furniture_surfaces,
-    scene_assets,
-)
+from adamo_vh.runtime.world import furniture_solids, furniture_surfaces, scene_assets
 
 _FURNITURE_OVERLAP_M = 0.02
 _OBJECT_OVERLAP_M = 0.005
