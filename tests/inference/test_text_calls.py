@@ -166,6 +166,11 @@ def test_values_without_quotes_get_the_type_that_the_tool_wants() -> None:
         "Action: Pick\nAction Input: Plate_57",
         f"to=functions.Pick json {ARGS[:-5]}",
         '<tool_call>{"name": "Look", "arguments": {"x": NaN}}</tool_call>',
+        "name: Pick\narguments:\n  object: Plate_57",
+        'Tool: Pick\nArguments: {"object": "Plate_57"}',
+        "**Function:** `Pick`\n**Parameters:** object = Plate_57",
+        'Calling tool Pick with {"object": "Plate_57"}',
+        "Let me call the Pick tool with these: {object: Plate_57}",
     ],
 )
 def test_what_looks_like_a_call_and_cannot_be_read_is_said(text: str) -> None:
@@ -190,6 +195,9 @@ def test_what_looks_like_a_call_and_cannot_be_read_is_said(text: str) -> None:
         "{" * 5000,
         "Done.<|im_end|>",
         "<|channel|>final<|message|>Done.<|return|>",
+        "I did it. Tools used: Pick and Drop.",
+        "I used Walk and Pick. The plate is at x: 1.0, y: 2.0.",
+        "Name: the plate. Function: to eat from.",
     ],
 )
 def test_prose_is_an_answer(text: str) -> None:

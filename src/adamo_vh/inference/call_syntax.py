@@ -253,11 +253,16 @@ def suspicious(tools: Sequence[ToolSchema]) -> re.Pattern[str]:
     """Finds what looks like part of a call of one of some tools, however it is spoilt."""
     names = "|".join(re.escape(tool.name) for tool in tools) or r"(?!)"
     keys = "|".join(NAME_KEYS)
+    known = {re.escape(key) for tool in tools for key in tool.parameters.get("properties", {})}
+    fields = "|".join(sorted(known)) or r"(?!)"
     return re.compile(
         rf"[\"'](?:{keys})[\"']\s{{0,9}}:\s{{0,9}}[\"'](?:{NAMESPACE})?(?:{names})[\"']"
         rf"|\b(?:{names})(?:\s?\{{|\((?:\s{{0,9}}\w{{1,40}}\s?=|\s{{0,9}}[\"'\d{{\[-]))"
         rf"|</?(?:{names})\b|<{_SPACE}(?:function|invoke)\b"
-        rf"|^[ \t*`]{{0,9}}Action\s{{0,3}}:[ \t*`]{{0,9}}(?:{names})\b",
+        rf"|^[ \t*`]{{0,9}}Action\s{{0,3}}:[ \t*`]{{0,9}}(?:{names})\b"
+        rf"|^[ \t*`_-]{{0,9}}(?:{keys}|[a-z]{{0,9}} ?(?:tool|function|call))[ \t*`_]{{0,4}}[:=]"
+        rf"[ \t*`_\"']{{0,9}}(?:{NAMESPACE})?(?:{names})[ \t*`_\"',]{{0,9}}$"
+        rf"|\b(?:{names})\b[^.!?{{}}]{{0,40}}\{{\s{{0,9}}[\"']?(?:{fields})\b[\"']?\s{{0,9}}:",
         re.IGNORECASE | re.MULTILINE,
     )
 

@@ -30,6 +30,8 @@ _OWN_CALL = re.compile(
     r"|\b(?:tool|function)[ _-]?calls?\b.{0,60}?\b(?:not be parsed|pars(?:e|ing) (?:error|fail)"
     r"|failed to parse|is not valid JSON)"
     r"|\bfailed to parse input at pos\b"
+    r"|\bmodel\b.{0,40}?\b(?:not a valid (?:tool|function)[ _-]?call"
+    r"|output that could not be parsed)"
     r"|\b(?:malformed|invalid|unparsable)\b.{0,20}?\b(?:tool|function)[ _-]?call.{0,40}?"
     r"\b(?:generat|output|by the model|from model|from the model)"
     r"|\bmodel\b.{0,40}?\b(?:malformed|invalid|unparsable)\b.{0,20}?\b(?:tool|function)[ _-]?call"

@@ -41,7 +41,9 @@ _NO_PICTURES = re.compile(
     re.IGNORECASE,
 )
 _FEW_PICTURES = re.compile(
-    r"at most (\d{1,3}) image|(?:only (?:one|1|a single)|multiple|too many) images?\b",
+    r"(?:at most|up to|more than|max(?:imum)?(?: of)?) (\d{1,3}) image"
+    r"|\bimages?\b.{0,40}?\b(?:limit of|max(?:imum)?(?: of| allowed)?:?) (\d{1,3})\b"
+    r"|(?:only (?:one|1|a)(?: single)?|multiple|too many|single)[ -]images?\b",
     re.IGNORECASE,
 )
 
@@ -169,8 +171,10 @@ def _picture_fix(complaint: str) -> str:
     """What to do about a complaint of too many pictures; empty if there is none."""
     if _NO_PICTURES.search(complaint):
         return "Leave the pictures out: --switch pictures=none."
-    found = _FEW_PICTURES.search(complaint)
-    return f"Keep fewer pictures in the prompt: --switch pictures={found[1] or 1}." if found else ""
+    if (found := _FEW_PICTURES.search(complaint)) is None:
+        return ""
+    most = found[1] or found[2] or "1"
+    return f"Keep fewer pictures in the prompt: --switch pictures={most}."
 
 
 def _is_out_of_credit(body: Any, everything: str) -> bool:
@@ -236,7 +240,9 @@ _SPELLINGS = {
     "seed": r"seed",
     "max_tokens": r"max_tokens|max_completion_tokens|max_?output_?tokens",
     SEVERAL_SYSTEM: r"system (?:message|role)",
-    USER_AFTER_TOOL: r"after (?:the )?(?:role )?['\"]?tool|roles must alternate|expected last role",
+    USER_AFTER_TOOL: r"after (?:the )?(?:role )?['\"]?tool|roles must alternate|expected last role"
+    r"|['\"]?user['\"]? (?:messages? )?(?:cannot|can't|must not|may not) follow (?:a )?['\"]?tool"
+    r"|['\"]?tool['\"]? (?:messages? )?must be followed by",
 }
 """How servers spell what may go, in the order in which it goes."""
 
