@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from adamo_vh.cli.exits import listed
+from adamo_vh.cli.study_app import study_app
 from adamo_vh.inference.uris import HELP
 
 app = typer.Typer(
@@ -24,6 +25,7 @@ models_app = typer.Typer(help="The models.", no_args_is_help=True)
 app.add_typer(models_app, name="models")
 cache_app = typer.Typer(help="What is kept to be faster.", invoke_without_command=True)
 app.add_typer(cache_app, name="cache")
+app.add_typer(study_app)
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]

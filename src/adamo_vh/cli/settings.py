@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from collections.abc import Sequence
 from dataclasses import fields
+from typing import Any
 
 import typer
 
@@ -67,3 +70,46 @@ def refuse_others(context: typer.Context, *allowed: str) -> None:
             f"leave it out (with --{allowed[0]} you can give "
             f"{', '.join(f'--{name}' for name in allowed[1:])})."
         )
+
+
+def values_of(given: Sequence[str] | None) -> dict[str, Any]:
+    """Read settings that are written NAME=VALUE, as in a study file but for the quotes of texts.
+
+    Raises:
+        ConfigError: One has another form.
+    """
+    return {name: _value(text) for name, text in pairs(given, "set").items()}
+
+
+def axes_of(given: Sequence[str] | None) -> dict[str, list[Any]]:
+    """Read axes that are written NAME=VALUE,VALUE or NAME=[...].
+
+    Raises:
+        ConfigError: One has another form.
+    """
+    axes = {}
+    for name, text in pairs(given, "axis").items():
+        whole = _value(text)
+        texts = [part for part in text.split(",") if part.strip()]
+        axes[name] = whole if isinstance(whole, list) else [_value(part) for part in texts]
+    return axes
+
+
+def _value(text: str) -> Any:
+    """A value as TOML writes it; else the text itself."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text.strip()
+
+
+def read_shard(text: str) -> tuple[int, int]:
+    """I/N as two numbers.
+
+    Raises:
+        ConfigError: The text has another form.
+    """
+    match = re.fullmatch(r"([0-9]{1,6})/([0-9]{1,6})", text.strip())
+    if match is None:
+        raise ConfigError(f"--shard {text!r}: write I/N, for example 1/4.")
+    return int(match[1]), int(match[2])

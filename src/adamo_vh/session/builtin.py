@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from adamo_vh.action_server.engine_check import engine_faults
 from adamo_vh.errors import RenderingError, SceneError
+from adamo_vh.plugins import ENGINES, plugin_names
 
 if TYPE_CHECKING:
     import numpy as np
@@ -54,6 +55,21 @@ def known_scenes() -> list[Scene]:
     from adamo_vh.runtime.scenes import load_scene
 
     return [load_scene(name) for name in scene_names()]
+
+
+def check_scene(scene: str) -> None:
+    """Make sure that there is a scene of this name, and that its file can be read.
+
+    Args:
+        scene: As for `adamo_vh.session.bodies.create_engine`.
+
+    Raises:
+        SceneError: There is none, or its file is wrong.
+    """
+    from adamo_vh.runtime.scenes import load_scene
+
+    if scene.partition(":")[0] not in plugin_names(ENGINES):
+        load_scene(scene)
 
 
 def inspect_scene_file(file: str) -> SceneReport:

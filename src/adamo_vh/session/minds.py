@@ -16,12 +16,15 @@ from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.inference.players.checked import checked
 from adamo_vh.inference.players.resumed import resumed
 from adamo_vh.inference.players.scripted import ScriptedModel, load_script
-from adamo_vh.inference.registry import create_model
+from adamo_vh.inference.registry import check_remote_uri, create_model
 from adamo_vh.inference.remote.capabilities import Support
+from adamo_vh.plugins import MODELS, plugin_names
 from adamo_vh.record.run_folder import SCRIPT
 from adamo_vh.record.trajectory import Trajectory, read_trajectory
 
 _REPLAY = "replay:"
+_REPEATS = ("baseline", "scripted", "replay", "cassette")
+"""What answers the same to the same, by the first word of its URI."""
 
 
 def model_of(
@@ -67,6 +70,40 @@ def model_of(
     if isinstance(model, ScriptedModel | Cassette):
         model.skip(answered)
     return model
+
+
+def is_remote(uri: str) -> bool:
+    """Whether a model is asked over a network; nothing is asked and no key is needed.
+
+    Raises:
+        ModelConfigError: The model is unknown.
+    """
+    prefix = uri.partition(":")[0]
+    if prefix in (*_REPEATS, "random") or prefix in plugin_names(MODELS):
+        return False
+    from adamo_vh.inference.remote.endpoint import parse_endpoint
+
+    check_remote_uri(uri)
+    parse_endpoint(uri)
+    return True
+
+
+def is_deterministic(uri: str) -> bool:
+    """Whether a model plays the same episode again and again, whatever the seed of the episode.
+
+    Nothing is asked and no key is needed.
+
+    Raises:
+        ModelConfigError: The model is unknown.
+    """
+    prefix, _, rest = uri.partition(":")
+    if prefix in _REPEATS or is_remote(uri):
+        return prefix in _REPEATS
+    if prefix == "random":
+        return bool(rest)
+    model = model_of(uri)
+    model.info.close()
+    return model.info.kind in (ModelKind.RULE_BASED, ModelKind.SCRIPTED, ModelKind.REPLAY)
 
 
 def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None) -> Profile:

@@ -102,6 +102,7 @@ def resume_episode(
     folder: str | Path,
     *,
     budget: Budget | None = None,
+    page: bool = True,
     **parts: Unpack[Parts],
 ) -> EpisodeResult:
     """Go on with an episode that was interrupted at any moment, or broke.
@@ -112,6 +113,7 @@ def resume_episode(
     Args:
         folder: Its run folder.
         budget: Holds from now on, in place of the recorded one.
+        page: Write the page too.
         **parts: What is handed in, as when it began (see `Parts`); a model, to let another one go
             on.
 
@@ -127,7 +129,7 @@ def resume_episode(
     ended = recorded.ended
     if ended is not None and ended.reason.is_scored and (path / RESULT).exists():
         raise RecordError(f"{path} has ended ({ended.reason}); nothing is left to resume.")
-    with Session.resume(path, budget=budget, **parts) as session:
+    with Session.resume(path, budget=budget, page=page, **parts) as session:
         if not session.trajectory.instructions:
             session.say(session.config.instruction)
         return session.result()

@@ -109,6 +109,7 @@ class Session:
         writer: TrajectoryWriter | None = None,
         folder: Path | None = None,
         known: Sequence[Event] = (),
+        page: bool = True,
     ) -> None:
         """Bring the parts together; use `begin` or `resume`.
 
@@ -120,12 +121,14 @@ class Session:
             writer: Of the record, if one is written.
             folder: Its run folder.
             known: What is on record already and will come again.
+            page: Whether the page of the run folder is kept up to date.
         """
         self.manifest = manifest
         self.folder = folder
         self.engine = world
         self.model = model
         self._parts, self._writer = parts, writer
+        self._paged = folder if page else None
         self._closing = ExitStack()
         self._trajectory = Trajectory(tuple(known))  # What was recorded counts, not its repetition.
         config = manifest.config
@@ -161,6 +164,7 @@ class Session:
         *,
         record: bool = False,
         cap: Budget | None = None,
+        page: bool = True,
         **parts: Unpack[Parts],
     ) -> Self:
         """Begin; nothing is said yet.
@@ -170,6 +174,7 @@ class Session:
             out: A new run folder for manifest, events, frames, result and page; none without.
             record: Also keep every request and reply of the model there, as a cassette.
             cap: On all instructions together.
+            page: Write the page too; it can be made from the rest at any time.
             **parts: What is handed in; see `Parts`.
 
         Raises:
@@ -211,7 +216,7 @@ class Session:
                 if record:
                     mind = taped(mind, folder / FOLDER)
             parts = _capped(parts, cap)
-            session = cls(manifest, world, mind, parts, writer=writer, folder=folder)
+            session = cls(manifest, world, mind, parts, writer=writer, folder=folder, page=page)
             session._closing.enter_context(stack.pop_all())
         return session
 
@@ -222,6 +227,7 @@ class Session:
         *,
         budget: Budget | None = None,
         cap: Budget | None = None,
+        page: bool = True,
         **parts: Unpack[Parts],
     ) -> Self:
         """Go on in a run folder, in the state in which it was left.
@@ -234,6 +240,7 @@ class Session:
             folder: A run folder.
             budget: Holds from now on, in place of the recorded one.
             cap: On all instructions together, those on record too.
+            page: Write the page too.
             **parts: What is handed in, as when it began; a model, to let another one go on.
 
         Raises:
@@ -265,7 +272,9 @@ class Session:
             writer = TrajectoryWriter(path, known=on_file, lock=lock)
             stack.callback(writer.close)
             parts = _capped(parts, cap)
-            session = cls(manifest, world, mind, parts, writer=writer, folder=path, known=known)
+            session = cls(
+                manifest, world, mind, parts, writer=writer, folder=path, known=known, page=page
+            )
             session._closing.enter_context(stack.pop_all())
         try:
             session._happening.catch_up()
@@ -303,8 +312,8 @@ class Session:
             FileError: The record cannot be written any more; it can be gone on with later.
         """
         ended = self._carry_out(instruction)
-        if self.folder is not None:
-            try_page(self.folder)
+        if self._paged is not None:
+            try_page(self._paged)
         return ended
 
     def _carry_out(self, instruction: str) -> Ended:
@@ -340,7 +349,8 @@ class Session:
                 # A full disk may take the files, never the score.
                 again = f"once that is mended: adamo-vh run --resume {self.folder}"
                 warnings.warn(f"the result is not written: {error} ({again})", stacklevel=2)
-            try_page(self.folder)
+        if self._paged is not None:
+            try_page(self._paged)
         return result
 
     def close(self) -> None:

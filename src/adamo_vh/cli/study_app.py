@@ -1,0 +1,113 @@
+"""The commands about studies: bench, report, merge, reindex, score."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from adamo_vh.inference.uris import HELP
+
+study_app = typer.Typer()
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+
+
+def _words(given: list[str] | None) -> list[str] | None:
+    """What was listed with commas, or by repeating the option; None if nothing was."""
+    words = [word.strip() for text in given or () for word in text.split(",")]
+    return [word for word in words if word] or None
+
+
+@study_app.command()
+def bench(
+    study: Annotated[
+        str | None,
+        typer.Option(
+            help="A study file (TOML), or paper, memory, sampling, points or resolution; what is "
+            "given beside it replaces what it says.",
+            show_default=False,
+        ),
+    ] = None,
+    tasks: Annotated[
+        list[str] | None, typer.Option("--tasks", "--task", help="T1,T8; all by default.")
+    ] = None,
+    scene: Annotated[list[str] | None, typer.Option(help="s1,s2; s1 by default.")] = None,
+    labeling: Annotated[list[str] | None, typer.Option(help="sem,opaq; sem by default.")] = None,
+    model: Annotated[list[str] | None, typer.Option(help=f"May be repeated. {HELP}")] = None,
+    profile: Annotated[list[str] | None, typer.Option(help="paper,lean; paper by default.")] = None,
+    repetitions: Annotated[
+        int | None,
+        typer.Option(
+            help="Of each cell and variation; what is deterministic is played once.",
+            show_default=False,
+        ),
+    ] = None,
+    variations: Annotated[
+        str | None,
+        typer.Option(help="Variations of the scenes: 0-4 or 0,2,7; 0 by default."),
+    ] = None,
+    resolution: Annotated[str | None, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = None,
+    setting: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="Another setting of all episodes, e.g. limits.max_steps=40."),
+    ] = None,
+    axis: Annotated[
+        list[str] | None,
+        typer.Option(help="A further setting to vary, e.g. k=4,6,10,50; may be repeated."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes; as many as cores, at most 4, by default.")
+    ] = None,
+    in_flight: Annotated[
+        int | None,
+        typer.Option(help="Episodes at once in each; 1, or 16 for remote models, by default."),
+    ] = None,
+    shard: Annotated[
+        str, typer.Option(help="Play part I of N of the study: I/N; see adamo-vh merge.")
+    ] = "1/1",
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="The study's folder; one below studies/ that follows from it by default."
+        ),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print every event as a line of JSON.")
+    ] = False,
+) -> None:
+    """Play a study: tasks x scenes x labelings x models x ...; the same command again goes on."""
+    from adamo_vh.cli.bench import play_and_show
+    from adamo_vh.cli.settings import axes_of, read_shard, values_of
+    from adamo_vh.study.running import Means, default_workers
+    from adamo_vh.study.study_file import read_study
+
+    lists = {
+        "tasks": _words(tasks),
+        "scenes": _words(scene),
+        "labelings": _words(labeling),
+        "models": model,
+        "profiles": _words(profile),
+        "repetitions": repetitions,
+        "variations": variations,
+        "resolution": resolution,
+    }
+    options = {name: value for name, value in lists.items() if value is not None}
+    planned = read_study(study, {**options, **values_of(setting), "axes": axes_of(axis)})
+    means = Means(
+        workers=default_workers() if workers is None else workers,
+        in_flight=in_flight,
+        shard=read_shard(shard),
+    )
+    play_and_show(planned, out, means, as_json=json)
+
+
+@study_app.command()
+def reindex(
+    study: Annotated[Path, typer.Argument(help="The folder of a study.")], json: Json = False
+) -> None:
+    """Make the index of a study again from its run folders."""
+    from adamo_vh.cli.study_folders import reindex_and_show
+
+    reindex_and_show(study, as_json=json)

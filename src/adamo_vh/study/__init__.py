@@ -1,0 +1,1 @@
+"""A study: many episodes, planned, played, survived and kept by one command."""

@@ -1,0 +1,163 @@
+"""A worker: one process that plays the episodes it is sent, several at once."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+import traceback
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from adamo_vh.errors import (
+    AdamoError,
+    ConfigError,
+    FileError,
+    FolderInUseError,
+    ModelConfigError,
+    RecordError,
+    SceneError,
+)
+from adamo_vh.observation import Frame
+from adamo_vh.record.termination import TerminationReason
+from adamo_vh.record.trajectory import Event
+from adamo_vh.study.executor import Failed, Finished, Noted, Report
+from adamo_vh.study.plan import Planned
+from adamo_vh.study.playing import play
+from adamo_vh.study.workplace import Engines
+
+BEAT_S = 2.0
+"""Seconds between two signs of life."""
+_SILENT_S = 1800.0
+"""Seconds without any event of an episode after which it is taken to hang: more than a provider may
+take for one answer, retries and waits included."""
+_NO_USE = (ConfigError, ModelConfigError, RecordError, SceneError)
+"""What another try would meet again."""
+_IN_USE_S = 10.0
+"""Seconds to wait for a folder that a process that was told to end may still hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Alive:
+    """A sign of life."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What a worker has to know before its first episode."""
+
+    folder: Path
+    """The study's."""
+
+
+class Pulse:
+    """Hears every event of an episode, so that one that hangs is noticed."""
+
+    def __init__(self) -> None:
+        """Start now."""
+        self.heard = time.monotonic()
+
+    def notify(self, event: Event, frame: Frame | None = None) -> None:
+        """Take note that it is alive."""
+        self.heard = time.monotonic()
+
+
+class Player:
+    """Plays episodes in this process and reports what became of each."""
+
+    def __init__(self, setup: Setup, report: Callable[[Report], None]) -> None:
+        """Prepare; engines are made when they are needed.
+
+        Args:
+            setup: The study.
+            report: Is told of the end of each episode, from any thread.
+        """
+        self._setup = setup
+        self._report = report
+        self._engines = Engines()
+        self._pulses: dict[str, Pulse] = {}
+
+    @property
+    def hangs(self) -> bool:
+        """Whether an episode has given no sign for too long."""
+        now = time.monotonic()
+        return any(now - pulse.heard > _SILENT_S for pulse in list(self._pulses.values()))
+
+    def play(self, planned: Planned) -> None:
+        """Play an episode; whatever happens is reported."""
+        pulse = self._pulses[planned.key] = Pulse()
+        try:
+            self._report(self._played(planned, pulse))
+        finally:
+            del self._pulses[planned.key]
+
+    def _played(self, planned: Planned, pulse: Pulse) -> Report:
+        try:
+            outcome = self._outcome(planned, pulse)
+        except FileError as error:
+            return Failed(planned.key, str(error), fatal=True)
+        except AdamoError as error:
+            again = isinstance(error, FolderInUseError) or not isinstance(error, _NO_USE)
+            return Failed(planned.key, str(error), again=again)
+        except Exception as error:
+            where = traceback.extract_tb(error.__traceback__)[-1]
+            place = f"{where.name}, {where.filename}, line {where.lineno}"
+            return Failed(planned.key, f"{type(error).__name__}: {error} ({place})", again=True)
+        return Finished(planned.key, outcome)
+
+    def _outcome(self, planned: Planned, pulse: Pulse) -> Any:
+        deadline = time.monotonic() + _IN_USE_S
+        while True:
+            try:
+                with self._engines.lent(planned.config) as engine:
+                    outcome = play(self._setup.folder, planned, engine=engine, observers=(pulse,))
+                    if outcome.termination is TerminationReason.BROKEN:
+                        self._engines.distrust(engine)
+                    return outcome
+            except FolderInUseError:
+                if time.monotonic() > deadline:
+                    raise
+                time.sleep(0.2)
+
+
+def work(pipe: Connection, setup: Setup) -> None:
+    """Play what comes through a pipe until it ends; for `multiprocessing`.
+
+    When the other end is gone the process ends at once, because somebody else may go on with the
+    study in the next moment.
+
+    Args:
+        pipe: Brings `Planned`, or None for the end; takes `Report` and `Alive`.
+        setup: The study.
+    """
+    # Several processes draw faster with one thread each; before anything loads OpenGL.
+    os.environ.setdefault("LP_NUM_THREADS", "1")
+    lock = threading.Lock()
+
+    def send(message: Report | Alive) -> None:
+        try:
+            with lock:
+                pipe.send(message)
+        except OSError:
+            os._exit(1)
+
+    warnings.showwarning = lambda message, *_, **__: send(Noted(str(message)))
+    player = Player(setup, send)
+
+    def beat() -> None:
+        while not player.hangs:
+            send(Alive())
+            time.sleep(BEAT_S)
+
+    threading.Thread(target=beat, daemon=True).start()
+    try:
+        while (planned := pipe.recv()) is not None:
+            threading.Thread(target=player.play, args=(planned,), daemon=True).start()
+    except (EOFError, OSError):
+        os._exit(1)
+    # Nothing is in flight any more; engines and connections go with the process.
+    os._exit(0)
