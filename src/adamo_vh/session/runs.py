@@ -22,7 +22,8 @@ from adamo_vh.perception import Tagger
 from adamo_vh.record.run_folder import RESULT
 from adamo_vh.record.trajectory import Observer, read_trajectory
 from adamo_vh.session.bodies import check_handed, open_server, opened
-from adamo_vh.session.session import Parts, Session, read_unfinished
+from adamo_vh.session.parts import Parts
+from adamo_vh.session.session import Session, read_unfinished
 
 
 def run_episode(

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import platform
 import warnings
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
-from typing import Self, TypedDict, Unpack
+from typing import Self, Unpack
 
-from adamo_vh.action_server import Tool
 from adamo_vh.cognition.agent import Agent, AgentConfig
-from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
+from adamo_vh.cognition.budget import Budget, BudgetGuard
 from adamo_vh.cognition.forecast import Forecast
-from adamo_vh.cognition.guards import Guard
-from adamo_vh.cognition.memory.protocol import NewMemory
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
 from adamo_vh.engine import World, WorldEvent, WorldState
 from adamo_vh.episode.config import EpisodeConfig
@@ -31,7 +25,6 @@ from adamo_vh.episode.result import (
 from adamo_vh.errors import ConfigError, FileError, RecordError
 from adamo_vh.inference.model import Model, ModelKind, Spent
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
-from adamo_vh.perception import Tagger
 from adamo_vh.record.run_folder import (
     EVENTS,
     FORMAT,
@@ -44,7 +37,6 @@ from adamo_vh.record.trajectory import (
     Ended,
     Event,
     Lost,
-    Observer,
     Stood,
     Trajectory,
     read_trajectory,
@@ -59,36 +51,12 @@ from adamo_vh.session.bodies import (
     instructions,
     open_server,
     opened,
-    own_engine,
     store_sources,
 )
 from adamo_vh.session.forecasting import check_price, forecast_episodes, refuse_early
 from adamo_vh.session.minds import fitting, opened_model, resumed_model
+from adamo_vh.session.parts import Parts, capped, describe
 from adamo_vh.session.repeating import Again, later
-
-_REPORTED = ("adamo-vh", "mujoco", "numpy", "pillow", "opencv-python-headless", "pydantic-ai-slim")
-
-
-class Parts(TypedDict, total=False):
-    """What can be handed in from outside, each in place of what the settings name.
-
-    A session that is resumed needs the same ones as when it began.
-    """
-
-    engine: World | None
-    """Is reset, and not closed."""
-    model: Model | None
-    """Is not closed."""
-    tools: Sequence[Tool] | None
-    """The body's primitives, in place of those of the profile."""
-    labeling: Tagger | None
-    """Makes and reads the tags."""
-    memory: NewMemory | None
-    """Makes the memory, in place of the short-term memory."""
-    guards: Sequence[Guard]
-    """Further reasons to stop."""
-    observers: Sequence[Observer]
-    """Are told of every event that is new; a fault of theirs ends nothing."""
 
 
 class Session:
@@ -215,7 +183,7 @@ class Session:
                 stack.callback(writer.close)
                 if record:
                     mind = taped(mind, folder / FOLDER)
-            parts = _capped(parts, cap)
+            parts = capped(parts, cap)
             session = cls(manifest, world, mind, parts, writer=writer, folder=folder, page=page)
             session._closing.enter_context(stack.pop_all())
         return session
@@ -271,7 +239,7 @@ class Session:
             world = opened(stack, manifest.config, parts.get("engine"), (path, manifest))
             writer = TrajectoryWriter(path, known=on_file, lock=lock)
             stack.callback(writer.close)
-            parts = _capped(parts, cap)
+            parts = capped(parts, cap)
             session = cls(
                 manifest, world, mind, parts, writer=writer, folder=path, known=known, page=page
             )
@@ -364,30 +332,6 @@ class Session:
     def __exit__(self, *_: object) -> None:
         """Close it."""
         self.close()
-
-
-def describe(config: EpisodeConfig, model: Model, world: World, parts: Parts) -> Manifest:
-    """The manifest of an episode that is about to begin."""
-    versions = {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}}
-    now = datetime.now(UTC).isoformat(timespec="seconds")
-    who, tagger = model.info, parts.get("labeling")
-    return Manifest(
-        config,
-        who.name,
-        who.kind,
-        versions,
-        now,
-        world.state(),
-        who.capabilities,
-        engine=own_engine(world) if parts.get("engine") else "",
-        labeling="" if tagger is None else type(tagger).__name__,
-    )
-
-
-def _capped(parts: Parts, cap: Budget | None) -> Parts:
-    """The parts with a guard of what all instructions may take together."""
-    guards = (*parts.get("guards", ()), *((BudgetGuard(Budget(), Ledger(), cap),) if cap else ()))
-    return {**parts, "guards": guards}
 
 
 def read_unfinished(folder: Path) -> Trajectory:

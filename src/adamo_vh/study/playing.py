@@ -10,8 +10,9 @@ from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.errors import FileError, FolderInUseError, RecordError
 from adamo_vh.files import naming
 from adamo_vh.record.run_folder import MANIFEST, RESULT, reserve
+from adamo_vh.session.parts import Parts
 from adamo_vh.session.runs import resume_episode
-from adamo_vh.session.session import Parts, Session
+from adamo_vh.session.session import Session
 from adamo_vh.study.plan import Planned
 from adamo_vh.study.store import EPISODES, episode_folder, finished
 
