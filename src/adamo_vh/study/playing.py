@@ -9,7 +9,7 @@ from typing import Unpack
 from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.errors import FileError, FolderInUseError, RecordError
 from adamo_vh.files import naming
-from adamo_vh.record.run_folder import MANIFEST, RESULT, reserve
+from adamo_vh.record.run_folder import LOCK, MANIFEST, RESULT, FolderLock, reserve
 from adamo_vh.session.parts import Parts
 from adamo_vh.session.runs import resume_episode
 from adamo_vh.session.session import Session
@@ -69,8 +69,12 @@ def _gone_on(study: Path, folder: Path, key: str, parts: Parts) -> bool:
         set_aside(study, key)
         return False
     # Killed before its first word: nothing in it is worth keeping.
-    with naming("written", folder):
-        shutil.rmtree(folder)
+    with FolderLock(folder), naming("written", folder):
+        for left in folder.iterdir():
+            if left.is_dir():
+                shutil.rmtree(left)
+            elif left.name != LOCK:
+                left.unlink()
     return False
 
 
