@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -25,7 +26,7 @@ def _reports(folder: Path, *episodes: Planned) -> list[Report]:
     return heard
 
 
-def _with(**settings: object) -> Planned:
+def _with(**settings: Any) -> Planned:
     return replace(PLANNED, config=replace(PLANNED.config, **settings))
 
 

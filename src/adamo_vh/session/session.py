@@ -37,6 +37,7 @@ from adamo_vh.record.trajectory import (
     Ended,
     Event,
     Lost,
+    Observer,
     Stood,
     Trajectory,
     read_trajectory,
