@@ -117,7 +117,7 @@ def test_several_episodes_are_in_flight_in_one_process(
         executor.start(planned)
     assert not executor.can_take()
     assert not executor.can_take(alone=True)
-    done = []
+    done: list[str] = []
     while len(done) < 3:
         done += [r.key for r in executor.wait(0.5) if isinstance(r, Finished)]
     assert sorted(done) == sorted(one.key for one in EPISODES[:3])
