@@ -18,6 +18,7 @@ SAYS = {
     "05_own_task.py": ["completion: 1.0 strict: 1.0", "45 on floor - yes", "34 near 57 - yes"],
     "06_own_labeling.py": ["cup-45 is in your hand", "answered - I hold it."],
     "07_own_engine.py": ["the body says:", "answered - The red block lies beside the yellow one."],
+    "08_many_at_once.py": ["T1 1.0 after", "T2 1.0 after", "T4 1.0 after", "T8 1.0 after"],
 }
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, ClassVar
@@ -31,8 +31,15 @@ if TYPE_CHECKING:
 _WALL_M = 0.05
 """A place this close to a wall is on it."""
 
+Turn = Callable[[], AbstractContextManager[float]]
+"""Gives the engine to one caller for a while, and the seconds that this was waited for."""
 PAPER_REFRESH = frozenset({"Look"})
 """The paper's refresh rule: a new view at the start and after Look only (Sec. 3.1)."""
+
+
+def at_once() -> AbstractContextManager[float]:
+    """The turn of an engine that nobody else uses."""
+    return nullcontext(0.0)
 
 
 class LocalActionServer:
@@ -46,6 +53,7 @@ class LocalActionServer:
         resolution: tuple[int, int] = (1920, 1080),
         tools: Sequence[Tool] = PAPER_TOOLS,
         refresh_after: frozenset[str] = PAPER_REFRESH,
+        turn: Turn = at_once,
     ) -> None:
         """Serve one episode.
 
@@ -55,6 +63,7 @@ class LocalActionServer:
             resolution: Width and height of the frames in pixels.
             tools: The primitives on offer.
             refresh_after: Names of the actions that are followed by a new view.
+            turn: How an engine that others use too is had for the length of one answer.
         """
         self._world = world
         self._body = acting_body(world)
@@ -62,6 +71,7 @@ class LocalActionServer:
         self._resolution = resolution
         self._tools = {tool.action_type: tool for tool in tools}
         self._refresh_after = refresh_after
+        self._turn = turn
         self._names = world.object_names
         self._seen: set[int] = set()
         self._shown: list[Frame] = []
@@ -106,8 +116,8 @@ class LocalActionServer:
 
     def observe(self) -> Sighting:
         """The view from where the body stands now; what it lists counts as seen."""
-        with _as_engine_fault("observe"):
-            return Sighting(self._view(), self.state_hash(), self.save())
+        with self._serving("observe") as waited_s:
+            return Sighting(self._view(), self.state_hash(), self.save(), waited_s)
 
     def _see(self) -> Percept:
         """What the eyes see now.
@@ -176,23 +186,25 @@ class LocalActionServer:
         """Carry out one action of a type on offer; what the agent did wrong becomes feedback."""
         name = action_name(type(action))
         self._shown = []
-        with _as_engine_fault(name):
+        with self._serving(name) as waited_s:
             try:
                 feedback = self._tools[type(action)].execute(self, action)
             except InvalidActionError as error:
                 feedback = Feedback.of_error(error)
             grants = name in self._refresh_after and feedback.outcome is not Outcome.REFUSED
-            return self._result(feedback, self._view() if grants else None)
+            return self._result(feedback, self._view() if grants else None, waited_s)
 
     def refuse(self, error: InvalidActionError) -> ActionResult:
         """Answer a call that is no valid action: nothing changes."""
         self._shown = []
-        with _as_engine_fault("refuse"):
-            return self._result(Feedback.of_error(error), None)
+        with self._serving("refuse") as waited_s:
+            return self._result(Feedback.of_error(error), None, waited_s)
 
-    def _result(self, feedback: Feedback, view: Observation | None) -> ActionResult:
-        hashed, saved = self.state_hash(), self.save()
-        return ActionResult(feedback, self.agent(), view, hashed, saved, tuple(self._shown))
+    def _result(
+        self, feedback: Feedback, view: Observation | None, waited_s: float
+    ) -> ActionResult:
+        hashed, saved, pictures = self.state_hash(), self.save(), tuple(self._shown)
+        return ActionResult(feedback, self.agent(), view, hashed, saved, pictures, waited_s)
 
     def agent(self) -> AgentState:
         """The body now, in the agent's words."""
@@ -200,7 +212,7 @@ class LocalActionServer:
 
     def say(self, text: str) -> None:
         """Deliver the final answer through the body."""
-        with _as_engine_fault("say"):
+        with self._serving("say"):
             self._body.say(text)
 
     def state_hash(self) -> str:
@@ -226,23 +238,26 @@ class LocalActionServer:
             raise EngineError(
                 f"The saved state is damaged: the scene has no object {min(unknown)}."
             )
-        with _as_engine_fault("load"):
+        with self._serving("load"):
             self._world.restore(kept.engine)
-        self._seen = set(kept.seen)
-        return self.state_hash()
+            self._seen = set(kept.seen)
+            return self.state_hash()
 
+    @contextmanager
+    def _serving(self, what: str) -> Iterator[float]:
+        """Have the engine for one answer; gives the seconds that this was waited for.
 
-@contextmanager
-def _as_engine_fault(what: str) -> Iterator[None]:
-    """Say in a sentence what an engine or a tool from outside did wrong."""
-    try:
-        yield
-    except AdamoError:
-        raise
-    except Exception as fault:
-        raise EngineError(
-            f"The engine or a tool failed in {what}: {type(fault).__name__}: {fault}"
-        ) from fault
+        What an engine or a tool from outside does wrong meanwhile is said in a sentence.
+        """
+        try:
+            with self._turn() as waited_s:
+                yield waited_s
+        except AdamoError:
+            raise
+        except Exception as fault:
+            raise EngineError(
+                f"The engine or a tool failed in {what}: {type(fault).__name__}: {fault}"
+            ) from fault
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,8 @@ class Sighting:
     saved: str
     """Handle to the saved state, for `ActionServer.load`: the state itself where body and mind are
     in one process, else a name under which the server keeps it."""
+    waited_s: float = 0.0
+    """Seconds that the server waited for an engine that others use too: none of the agent's."""
 
     @property
     def agent(self) -> AgentState:
@@ -47,6 +49,8 @@ class ActionResult:
     """Handle to the saved state after the action; see `Sighting`."""
     pictures: tuple[Frame, ...] = ()
     """What the action itself showed, e.g. a close-up; not the view of the eyes."""
+    waited_s: float = 0.0
+    """Seconds that the server waited for its engine; see `Sighting`."""
 
 
 class ActionServer(Protocol):

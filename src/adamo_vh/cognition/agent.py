@@ -225,7 +225,7 @@ class Agent:
     def _execute(self, name: str, wish: Wish) -> ActionResult:
         started = time.monotonic()
         result = execute_call(self._server, name, wish.arguments)
-        world_s = time.monotonic() - started
+        world_s = time.monotonic() - started - result.waited_s
         self._note(result)
         self._steps += 1
         self._tell(
@@ -272,6 +272,7 @@ class Agent:
     def _note(self, answer: ActionResult | Sighting) -> None:
         """Note how body and world stand after an answer of the server."""
         self._body, self._state_hash = answer.agent, answer.state_hash
+        self._errand.watch.leave_out(answer.waited_s)
 
     def _observe(self) -> Observation:
         sighting = self._server.observe()
@@ -284,15 +285,16 @@ class Agent:
         return view
 
     def _end(self, stop: Stop) -> Ended:
+        errand = self._errand
+        seconds = errand.watch.seconds
         if stop.reason.is_scored:
             self._server.say(stop.answer)
-        errand = self._errand
         ended = Ended(
             self._steps - errand.first_step,
             stop.reason,
             stop.answer,
             self._state_hash,
-            errand.watch.seconds,
+            seconds,
             stop.why,
             stop.spent,
         )

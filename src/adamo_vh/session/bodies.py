@@ -12,6 +12,7 @@ from typing import cast
 
 from adamo_vh.action import Code, action_name
 from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS, LocalActionServer, Tool
+from adamo_vh.action_server.local import at_once
 from adamo_vh.benchmark.conditions import NEAR_M
 from adamo_vh.cognition.instructions import system_prompt
 from adamo_vh.engine import World, acting_body
@@ -22,6 +23,7 @@ from adamo_vh.files import write_whole
 from adamo_vh.perception import PerceptionConfig, Tagger
 from adamo_vh.record.run_folder import SCENE, SCRIPT
 from adamo_vh.record.trajectory import Trajectory
+from adamo_vh.session.lending import LentWorld
 
 ENGINES, TOOLS = "adamo_vh.engines", "adamo_vh.tools"
 """Entry-point groups under which other packages offer theirs."""
@@ -106,7 +108,8 @@ def as_said(config: EpisodeConfig, world: World) -> EpisodeConfig:
 def own_engine(world: World) -> str:
     """What an engine is, if a scene's name alone does not bring it back; empty if it does."""
     source = world.scene.source
-    return "" if source == "built-in" or Path(source).is_file() else type(world).__name__
+    made = world.lender.world if isinstance(world, LentWorld) else world
+    return "" if source == "built-in" or Path(source).is_file() else type(made).__name__
 
 
 def store_sources(folder: Path, config: EpisodeConfig, world: World) -> None:
@@ -232,4 +235,5 @@ def open_server(
         perception=perception,
         resolution=config.resolution,
         tools=tools_for(config, tools),
+        turn=engine.turn if isinstance(engine, LentWorld) else at_once,
     )
