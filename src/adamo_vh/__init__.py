@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from adamo_vh.action_server import PAPER_TOOLS as PAPER_TOOLS
     from adamo_vh.action_server import Tool as Tool
     from adamo_vh.action_server import ToolContext as ToolContext
+    from adamo_vh.action_server.frame_cache import FrameCache as FrameCache
     from adamo_vh.benchmark.tasks import Task as Task
     from adamo_vh.cognition.budget import Budget as Budget
     from adamo_vh.cognition.guards import Guard as Guard
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "action": "Feedback",
     "action_server": "PAPER_TOOLS Tool ToolContext",
+    "action_server.frame_cache": "FrameCache",
     "benchmark.tasks": "Task",
     "cognition.budget": "Budget",
     "cognition.guards": "Guard",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.records import assert_the_same_record
 
 import adamo_vh
 from adamo_vh.action import ToolSchema
@@ -26,7 +26,6 @@ from adamo_vh.inference.model import Model, Reply, Sampling
 from adamo_vh.inference.players.scripted import ScriptedModel
 from adamo_vh.inference.players.wrapper import Ask, Wrapped
 from adamo_vh.inference.registry import create_model
-from adamo_vh.record.run_folder import EVENTS, FRAMES, MANIFEST, RESULT
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
@@ -37,8 +36,6 @@ SMALL = (640, 360)
 TINY = (320, 180)
 SHORT = {"resolution": TINY, "limits": adamo_vh.Limits(max_steps=20)}
 PLATE, CUP = 57, 45
-OWN = {"seconds", "world_s", "model_s", "waited_s", "started_at", "run"}
-"""What no two runs have in common: when and where they were, and how long they took."""
 
 
 @pytest.fixture(params=["s1", "s2"])
@@ -50,27 +47,6 @@ def lender(request: pytest.FixtureRequest) -> Iterator[Lender]:
 @pytest.fixture
 def lent_s1(engine: BuiltinEngine) -> Lender:
     return Lender(engine)
-
-
-def told(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {k: told(v) for k, v in value.items() if k not in OWN}
-    return [told(item) for item in value] if isinstance(value, list) else value
-
-
-def record_of(folder: Path) -> dict[str, Any]:
-    """All that a run folder says, but for time and place."""
-    record: dict[str, Any] = {path.name: path.read_bytes() for path in (folder / FRAMES).iterdir()}
-    for name in (MANIFEST, RESULT):
-        record[name] = told(json.loads((folder / name).read_bytes()))
-    lines = (folder / EVENTS).read_text(encoding="utf-8").splitlines()
-    return record | {str(i): told(json.loads(line)) for i, line in enumerate(lines)}
-
-
-def assert_the_same_record(one: Path, other: Path) -> None:
-    records = record_of(one), record_of(other)
-    assert records[0].keys() == records[1].keys()
-    assert [name for name in records[0] if records[0][name] != records[1][name]] == []
 
 
 def played(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from adamo_vh.action import Action, Code, Feedback, Outcome, action_name
+from adamo_vh.action_server.frame_cache import FrameCache, view_key
 from adamo_vh.action_server.frame_check import frame_fault
 from adamo_vh.action_server.protocol import ActionResult, Sighting
 from adamo_vh.action_server.tools import PAPER_TOOLS, Tool
@@ -54,6 +55,7 @@ class LocalActionServer:
         tools: Sequence[Tool] = PAPER_TOOLS,
         refresh_after: frozenset[str] = PAPER_REFRESH,
         turn: Turn = at_once,
+        frames: FrameCache | None = None,
     ) -> None:
         """Serve one episode.
 
@@ -64,6 +66,7 @@ class LocalActionServer:
             tools: The primitives on offer.
             refresh_after: Names of the actions that are followed by a new view.
             turn: How an engine that others use too is had for the length of one answer.
+            frames: Keeps views, so that what was drawn before is not drawn again.
         """
         self._world = world
         self._body = acting_body(world)
@@ -72,6 +75,8 @@ class LocalActionServer:
         self._tools = {tool.action_type: tool for tool in tools}
         self._refresh_after = refresh_after
         self._turn = turn
+        self._frames = frames
+        self._in_action = False
         self._names = world.object_names
         self._seen: set[int] = set()
         self._shown: list[Frame] = []
@@ -131,14 +136,22 @@ class LocalActionServer:
         return percept
 
     def _view(self) -> Observation:
-        percept = self._see()
-        raycast = only(self._is_anchor, self._body.rays)
-        observation = perceive(percept, raycast, self._perception, self._names)
+        observation = self._drawn() if self._frames is None else self._kept(self._frames)
         for item in observation.objects:
             object_id = self._perception.labeling.resolve(item.tag, self._names)
             if object_id is not None:
                 self._seen.add(object_id)
         return observation
+
+    def _kept(self, frames: FrameCache) -> Observation:
+        # A moment of an action, seen by who watches it, is in no snapshot.
+        told = not self._in_action
+        key = view_key(self._world, self._resolution, self._perception) if told else b""
+        return frames.view(key, self._drawn)
+
+    def _drawn(self) -> Observation:
+        raycast = only(self._is_anchor, self._body.rays)
+        return perceive(self._see(), raycast, self._perception, self._names)
 
     def _is_anchor(self, point: Vec3) -> bool:
         """Whether a place can be a reference point: in the room, not behind its window."""
@@ -188,9 +201,12 @@ class LocalActionServer:
         self._shown = []
         with self._serving(name) as waited_s:
             try:
+                self._in_action = True
                 feedback = self._tools[type(action)].execute(self, action)
             except InvalidActionError as error:
                 feedback = Feedback.of_error(error)
+            finally:
+                self._in_action = False
             grants = name in self._refresh_after and feedback.outcome is not Outcome.REFUSED
             return self._result(feedback, self._view() if grants else None, waited_s)
 

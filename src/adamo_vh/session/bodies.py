@@ -12,6 +12,7 @@ from typing import cast
 
 from adamo_vh.action import Code, action_name
 from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS, LocalActionServer, Tool
+from adamo_vh.action_server.frame_cache import FrameCache
 from adamo_vh.action_server.local import at_once
 from adamo_vh.benchmark.conditions import NEAR_M
 from adamo_vh.cognition.instructions import system_prompt
@@ -215,6 +216,7 @@ def open_server(
     engine: World,
     tools: Sequence[Tool] | None = None,
     labeling: Tagger | None = None,
+    frames: FrameCache | None = None,
 ) -> LocalActionServer:
     """The action server of an episode.
 
@@ -223,6 +225,7 @@ def open_server(
         engine: The world, just reset.
         tools: The body's primitives; those of the profile by default.
         labeling: Makes the tags; that of the settings by default.
+        frames: Keeps views; each is drawn without.
     """
     perception = PerceptionConfig(
         labeling=labeling or config.labeling,
@@ -236,4 +239,5 @@ def open_server(
         resolution=config.resolution,
         tools=tools_for(config, tools),
         turn=engine.turn if isinstance(engine, LentWorld) else at_once,
+        frames=frames,
     )

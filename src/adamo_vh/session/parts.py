@@ -9,6 +9,7 @@ from importlib.metadata import version
 from typing import TypedDict
 
 from adamo_vh.action_server import Tool
+from adamo_vh.action_server.frame_cache import FrameCache
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.guards import Guard
 from adamo_vh.cognition.memory.protocol import NewMemory
@@ -43,6 +44,8 @@ class Parts(TypedDict, total=False):
     """Further reasons to stop."""
     observers: Sequence[Observer]
     """Are told of every event that is new; a fault of theirs ends nothing."""
+    frame_cache: FrameCache | None
+    """Keeps views for several sessions, so that the same picture is drawn once."""
 
 
 def describe(config: EpisodeConfig, model: Model, world: World, parts: Parts) -> Manifest:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Unpack
 
 from adamo_vh.action_server import Tool
+from adamo_vh.action_server.frame_cache import FrameCache
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.guards import Guard
 from adamo_vh.cognition.memory.protocol import NewMemory
@@ -37,6 +38,7 @@ def run_episode(
     memory: NewMemory | None = None,
     guards: Sequence[Guard] = (),
     observers: Sequence[Observer] = (),
+    frame_cache: FrameCache | None = None,
     **settings: Unpack[Settings],
 ) -> EpisodeResult:
     """Run one episode.
@@ -53,6 +55,7 @@ def run_episode(
         memory: Makes the memory; the short-term memory by default.
         guards: Further reasons to stop, e.g. the budget of a whole run.
         observers: Are told of every event.
+        frame_cache: Keeps views for several episodes, so that the same picture is drawn once.
         **settings: Every other setting by its name: task, scene, labeling, profile, switches,
             seed, resolution, limits, budget, ... See `EpisodeConfig` and `Settings`.
 
@@ -80,6 +83,7 @@ def run_episode(
         labeling=None if isinstance(labeling, str) else labeling,
         guards=guards,
         observers=observers,
+        frame_cache=frame_cache,
     ) as session:
         session.say(config.instruction)
         return session.result()

@@ -102,7 +102,8 @@ class Session:
         self._trajectory = Trajectory(tuple(known))  # What was recorded counts, not its repetition.
         config = manifest.config
         tagger = parts.get("labeling")
-        server = open_server(config, world, parts.get("tools"), tagger)
+        frames = parts.get("frame_cache")
+        server = open_server(config, world, parts.get("tools"), tagger, frames)
         prompt = instructions(config, world, server, tagger)
         memory = parts.get("memory") or ShortTermMemory
         task, heard = config.scored_task, [e for e in known if not isinstance(e, Stood)]
