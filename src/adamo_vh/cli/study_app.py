@@ -67,6 +67,10 @@ def bench(
     shard: Annotated[
         str, typer.Option(help="Play part I of N of the study: I/N; see adamo-vh merge.")
     ] = "1/1",
+    frame_cache: Annotated[
+        bool,
+        typer.Option(help="Draw views that episodes share once; they come out the same without."),
+    ] = True,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -99,6 +103,7 @@ def bench(
         workers=default_workers() if workers is None else workers,
         in_flight=in_flight,
         shard=read_shard(shard),
+        frame_cache=frame_cache,
     )
     play_and_show(planned, out, means, as_json=json)
 

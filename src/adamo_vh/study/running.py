@@ -34,6 +34,8 @@ class Means:
     """Episodes at once in each; None for 1, or 16 if a model is remote."""
     shard: tuple[int, int] = (1, 1)
     """Which part of the plan, of how many: 1/4 to 4/4 are played by four machines."""
+    frame_cache: bool = True
+    """Whether views that episodes share are drawn once in each process."""
 
     def __post_init__(self) -> None:
         """Refuse what is nothing to play with."""
@@ -84,7 +86,8 @@ def run_study(
         tally = Tally(mine, store.outcomes)
         left = [one for one in mine if not store.is_scored(one.key)]
         in_flight = means.in_flight or default_in_flight(study.models)
-        executor = LocalExecutor(Setup(folder.absolute()), min(means.workers, len(left)), in_flight)
+        setup = Setup(folder.absolute(), means.frame_cache)
+        executor = LocalExecutor(setup, min(means.workers, len(left)), in_flight)
         stack.callback(executor.close)
         supervisor = Supervisor(store, executor, tally)
         watcher = stack.enter_context(closing(watch(tally, supervisor)))

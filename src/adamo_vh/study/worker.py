@@ -13,6 +13,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from adamo_vh.action_server.frame_cache import FrameCache
 from adamo_vh.errors import (
     AdamoError,
     ConfigError,
@@ -52,6 +53,8 @@ class Setup:
 
     folder: Path
     """The study's."""
+    frame_cache: bool = True
+    """Whether views that episodes share are drawn once."""
 
 
 class Pulse:
@@ -79,6 +82,7 @@ class Player:
         self._setup = setup
         self._report = report
         self._engines = Engines()
+        self._frames = FrameCache() if setup.frame_cache else None
         self._pulses: dict[str, Pulse] = {}
 
     @property
@@ -114,7 +118,13 @@ class Player:
         while True:
             try:
                 with self._engines.lent(planned.config) as engine:
-                    outcome = play(self._setup.folder, planned, engine=engine, observers=(pulse,))
+                    outcome = play(
+                        self._setup.folder,
+                        planned,
+                        engine=engine,
+                        observers=(pulse,),
+                        frame_cache=self._frames,
+                    )
                     if outcome.termination is TerminationReason.BROKEN:
                         self._engines.distrust(engine)
                     return outcome
