@@ -71,6 +71,15 @@ def bench(
         bool,
         typer.Option(help="Draw views that episodes share once; they come out the same without."),
     ] = True,
+    concurrent: Annotated[
+        int | None, typer.Option(help="Requests at once to each provider, from all processes.")
+    ] = None,
+    requests_per_minute: Annotated[
+        int | None, typer.Option(help="Requests a minute to each provider, from all processes.")
+    ] = None,
+    tokens_per_minute: Annotated[
+        int | None, typer.Option(help="Tokens a minute of each provider, for all processes.")
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -84,6 +93,7 @@ def bench(
     """Play a study: tasks x scenes x labelings x models x ...; the same command again goes on."""
     from adamo_vh.cli.bench import play_and_show
     from adamo_vh.cli.settings import axes_of, read_shard, values_of
+    from adamo_vh.study.limiter import Rates
     from adamo_vh.study.running import Means, default_workers
     from adamo_vh.study.study_file import read_study
 
@@ -104,6 +114,7 @@ def bench(
         in_flight=in_flight,
         shard=read_shard(shard),
         frame_cache=frame_cache,
+        rates=Rates(concurrent, requests_per_minute, tokens_per_minute),
     )
     play_and_show(planned, out, means, as_json=json)
 

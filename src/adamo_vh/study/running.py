@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from adamo_vh.errors import ConfigError
 from adamo_vh.session.builtin import check_scene
 from adamo_vh.session.minds import is_remote, model_of
+from adamo_vh.study.limiter import Rates
 from adamo_vh.study.local import LocalExecutor
 from adamo_vh.study.plan import Planned, Study, plan
 from adamo_vh.study.store import Store
@@ -36,6 +37,8 @@ class Means:
     """Which part of the plan, of how many: 1/4 to 4/4 are played by four machines."""
     frame_cache: bool = True
     """Whether views that episodes share are drawn once in each process."""
+    rates: Rates = field(default=Rates())
+    """How much each provider may be asked by all processes together."""
 
     def __post_init__(self) -> None:
         """Refuse what is nothing to play with."""
@@ -86,7 +89,7 @@ def run_study(
         tally = Tally(mine, store.outcomes)
         left = [one for one in mine if not store.is_scored(one.key)]
         in_flight = means.in_flight or default_in_flight(study.models)
-        setup = Setup(folder.absolute(), means.frame_cache)
+        setup = Setup(folder.absolute(), means.frame_cache, means.rates)
         executor = LocalExecutor(setup, min(means.workers, len(left)), in_flight)
         stack.callback(executor.close)
         supervisor = Supervisor(store, executor, tally)

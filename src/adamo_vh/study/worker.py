@@ -8,7 +8,7 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -23,10 +23,12 @@ from adamo_vh.errors import (
     RecordError,
     SceneError,
 )
+from adamo_vh.inference.remote.gate import through
 from adamo_vh.observation import Frame
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Event
 from adamo_vh.study.executor import Failed, Finished, Noted, Report
+from adamo_vh.study.limiter import LIMITS, Limiter, Rates
 from adamo_vh.study.plan import Planned
 from adamo_vh.study.playing import play
 from adamo_vh.study.workplace import Engines
@@ -55,6 +57,8 @@ class Setup:
     """The study's."""
     frame_cache: bool = True
     """Whether views that episodes share are drawn once."""
+    rates: Rates = field(default=Rates())
+    """How much each provider may be asked by all workers together."""
 
 
 class Pulse:
@@ -83,6 +87,7 @@ class Player:
         self._report = report
         self._engines = Engines()
         self._frames = FrameCache() if setup.frame_cache else None
+        self._limiter = Limiter(setup.folder / LIMITS, setup.rates)
         self._pulses: dict[str, Pulse] = {}
 
     @property
@@ -117,7 +122,7 @@ class Player:
         deadline = time.monotonic() + _IN_USE_S
         while True:
             try:
-                with self._engines.lent(planned.config) as engine:
+                with through(self._limiter), self._engines.lent(planned.config) as engine:
                     outcome = play(
                         self._setup.folder,
                         planned,

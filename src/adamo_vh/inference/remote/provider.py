@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from adamo_vh.action import ToolSchema
 from adamo_vh.errors import ProviderError
 from adamo_vh.inference.cost.prices import cost_usd
-from adamo_vh.inference.cost.tokens import cut_prompt, filled_usage, rule_for
+from adamo_vh.inference.cost.tokens import cut_prompt, estimate_request, filled_usage, rule_for
 from adamo_vh.inference.messages import Message
 from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Rung, Sampling, Spent, Usage
 from adamo_vh.inference.redaction import clean_message, redacted
@@ -24,6 +24,7 @@ from adamo_vh.inference.remote.endings import refused_call
 from adamo_vh.inference.remote.endpoint import parse_endpoint
 from adamo_vh.inference.remote.exchange import Exchange, sent_settings, watch
 from adamo_vh.inference.remote.faults import read_error, read_exchange, refused_setting
+from adamo_vh.inference.remote.gate import Passage
 from adamo_vh.inference.remote.replies import Reading, read_refused_call, read_response
 from adamo_vh.inference.remote.retry import Failure, RetryPolicy, Success, run_with_retries
 from adamo_vh.inference.remote.settings import EXACT, Settings
@@ -166,12 +167,15 @@ class ProviderModel:
         """
         asking = _Asking(messages, tools, to_parameters(tools, schema), sampling)
         started = time.monotonic()
+        where = self._endpoint.base_url or self._endpoint.prefix
+        passage = Passage(where, lambda: estimate_request(messages, tools, rule_for(self._name)))
         try:
             answer = run_with_retries(
                 self._retry,
                 self._name,
-                lambda: self._try(asking),
+                lambda: self._pass(asking, passage),
                 adapt=lambda failure: bool(failure.refused),
+                enter=passage.enter,
             )
         except ProviderError as error:
             cost, waited = self._cost(asking.lost), time.monotonic() - started
@@ -220,6 +224,19 @@ class ProviderModel:
         secure = not (self._endpoint.base_url or "https:").startswith("http:")
         self._http = watching_client(self._retry.timeout_s, secure=secure)
         return connect(self._endpoint, self._http)
+
+    def _pass(self, asking: _Asking, passage: Passage) -> _Answer | Failure:
+        """Try once, and tell the gate what came of it."""
+        tokens, failure = 0, None
+        try:
+            outcome = self._try(asking)
+            if isinstance(outcome, Failure):
+                failure = outcome
+            else:
+                tokens = outcome.usage.total_tokens
+            return outcome
+        finally:
+            passage.leave(tokens, failure)
 
     def _try(self, asking: _Asking) -> _Answer | Failure:
         exchange = Exchange(required=EXACT if asking.sampling.exact else ())

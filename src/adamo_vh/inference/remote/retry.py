@@ -79,6 +79,7 @@ def run_with_retries(
     name: str,
     attempt: Callable[[], T | Failure],
     adapt: Callable[[Failure], bool] = lambda failure: False,
+    enter: Callable[[], float] = lambda: 0.0,
 ) -> Success[T]:
     """Try until an attempt succeeds or the policy says stop.
 
@@ -88,14 +89,16 @@ def run_with_retries(
         attempt: One try; returns its value or why it failed.
         adapt: Told of each failure; true if it changed what the next attempt asks for, which then
             follows at once and is no retry of the same. It must not be true for ever.
+        enter: Waits for leave to try; gives the seconds that it took, which are lost to no fault.
 
     Raises:
         RefusedError: The last failure was final.
         ProviderError: The limits are used up; its text tells the last failure.
     """
     begin = time.monotonic()
-    failures = 0
+    failures, held_s = 0, 0.0
     while True:
+        held_s += enter()
         start = time.monotonic()
         outcome = attempt()
         if not isinstance(outcome, Failure):
@@ -105,7 +108,7 @@ def run_with_retries(
         if not outcome.retryable:
             raise RefusedError(f"{name}: {outcome.text}", outcome.status, outcome.words)
         failures += 1
-        lost_s = time.monotonic() - begin
+        lost_s = time.monotonic() - begin - held_s
         pause_s = policy.pause_s(failures, outcome.retry_after_s)
         if failures == policy.max_tries or lost_s + pause_s > policy.max_wait_s:
             text = f"{name}: {_last_words(policy, outcome, failures, lost_s)}"
