@@ -190,17 +190,18 @@ def _scored(groups: Sequence[Cell], measure: Callable[[Outcome], float | None]) 
         tasks.setdefault(group[0].task, []).append(fsum(values(group)) / len(group))
     clusters = [fsum(means) / len(means) for means in tasks.values()]
     layouts = [[fsum(values(v)) / len(v) for v in _by_variation(group)] for group in groups]
-    repeated = [values(part) for part in _repeated(groups)]
+    again = [values(part) for part in repeated(groups)]
     return Scored(
         mean=centre,
-        repeat=None if _is_deterministic(groups) else interval(repeated, centre),
+        repeat=None if is_deterministic(groups) else interval(again, centre),
         task=interval([clusters], centre),
         variation=interval(layouts, centre),
         pass_hat=_pass_hats([[value >= 1.0 for value in values(group)] for group in groups]),
     )
 
 
-def _is_deterministic(groups: Sequence[Cell]) -> bool:
+def is_deterministic(groups: Sequence[Cell]) -> bool:
+    """Whether a repetition would be the same, because the player and the world are."""
     return any(group[0].model_kind in DETERMINISTIC for group in groups)
 
 
@@ -221,7 +222,7 @@ def _by_variation(cell: Cell) -> list[Cell]:
     return [parts[number] for number in sorted(parts)]
 
 
-def _repeated(groups: Sequence[Cell]) -> Sequence[Cell]:
+def repeated(groups: Sequence[Cell]) -> Sequence[Cell]:
     """What was repeated: each variation of each cell, or else each cell with all its layouts."""
     parts = [part for group in groups for part in _by_variation(group)]
     return groups if any(len(part) < 2 for part in parts) else parts
@@ -232,11 +233,11 @@ def _why(groups: Sequence[Cell], tasks: int) -> Why:
     if not groups:
         return Why(*("nothing is scored",) * 3)
     repeat = ""
-    if _is_deterministic(groups):
+    if is_deterministic(groups):
         repeat = "deterministic: the same in every repetition; n counts variations"
     elif any(len(group) < 2 for group in groups):
         repeat = "a cell has a single scored episode"
-    elif len(_repeated(groups)) == len(groups) and any(len(_by_variation(g)) > 1 for g in groups):
+    elif len(repeated(groups)) == len(groups) and any(len(_by_variation(g)) > 1 for g in groups):
         repeat = "each variation was played too seldom: the spread of the layouts is in it"
     variation = ""
     if any(len(_by_variation(group)) < 2 for group in groups):

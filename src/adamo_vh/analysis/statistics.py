@@ -78,7 +78,12 @@ def interval(groups: Sequence[Sequence[float]], centre: float) -> Interval | Non
     if error is None:
         return None
     half = max(quantile(freedom(groups)) * error, agreement(sum(map(len, groups))))
-    return Interval(max(0.0, centre - half), min(1.0, centre + half))
+    return around(centre, half, 0.0, 1.0)
+
+
+def around(centre: float, half: float, least: float, most: float) -> Interval:
+    """The interval of a half width, cut off where no value can be."""
+    return Interval(max(least, centre - half), min(most, centre + half))
 
 
 def agreement(count: int) -> float:
