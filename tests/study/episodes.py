@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any
 
 from tests.run_folder import Recorder
 
+from adamo_vh.analysis.diagnosis.finding import DIAGNOSIS, Code, Diagnosis, FailureClass
 from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.study.executor import Failed, Finished, Lost, Report
@@ -26,7 +28,11 @@ def record(
     folder: Path, planned: Planned, reason: TerminationReason = TerminationReason.ANSWERED
 ) -> Outcome:
     """Write the run folder of an episode that has ended."""
-    Recorder(episode_folder(folder, planned.key), planned.config).end("Done.", reason)
+    run = episode_folder(folder, planned.key)
+    Recorder(run, planned.config).end("Done.", reason)
+    if reason.is_scored:
+        found = Diagnosis(FailureClass.EXECUTION, Code.FALSE_CLAIM, "Nothing was done.")
+        (run / DIAGNOSIS).write_text(json.dumps(found.json()))
     outcome = finished(folder, planned)
     assert outcome is not None
     return outcome

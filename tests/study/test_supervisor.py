@@ -25,7 +25,7 @@ def _play(
     executor, heard = TableExecutor(folder, goes_wrong, slots), Heard()
     with Store(folder, study, plan(study)) as store:
         tally = Tally(store.episodes.values(), store.outcomes)
-        left = [one for one in store.episodes.values() if not store.is_scored(one.key)]
+        left = [one for one in store.episodes.values() if not store.is_done(one.key)]
         verdict = Supervisor(store, executor, tally).run(left, heard)
     return verdict, executor, heard, tally
 

@@ -201,15 +201,6 @@ def replay(
 
 
 @app.command()
-def report(run_dir: Annotated[Path, typer.Argument(help="A run folder.")]) -> None:
-    """Write the page of a recorded episode again."""
-    from adamo_vh.cli.terminal import say
-    from adamo_vh.report.page import write_page
-
-    say(write_page(run_dir))
-
-
-@app.command()
 def explain(
     run_dir: Annotated[Path, typer.Argument(help="A run folder.")], json: Json = False
 ) -> None:

@@ -120,6 +120,53 @@ def bench(
 
 
 @study_app.command()
+def report(
+    folders: Annotated[
+        list[Path], typer.Argument(help="A run folder, or the folder of a study.", metavar="RUN...")
+    ],
+    json: Json = False,
+    timings: Annotated[
+        bool,
+        typer.Option(
+            "--timings/--no-timings",
+            help="With --json: tell what depends on the clock as well.",
+        ),
+    ] = True,
+) -> None:
+    """Report what came of an episode or a study: cells, means, failures, rank correlations."""
+    from adamo_vh.cli.study_folders import report_and_show
+
+    report_and_show(folders, as_json=json, timings=timings)
+
+
+@study_app.command()
+def merge(
+    out: Annotated[Path, typer.Argument(help="The folder of the whole study; made if missing.")],
+    parts: Annotated[list[Path], typer.Argument(help="Folders of its parts, e.g. of its shards.")],
+    json: Json = False,
+) -> None:
+    """Put the parts of one study together, e.g. the shards that several machines have played."""
+    from adamo_vh.cli.study_folders import merge_and_show
+
+    merge_and_show(out, parts, as_json=json)
+
+
+@study_app.command()
+def score(
+    folder: Annotated[
+        Path, typer.Argument(help="A run folder, or the folder of a study.", metavar="RUN")
+    ],
+    diff: Annotated[bool, typer.Option("--diff", help="Show only what changed.")] = False,
+    write: Annotated[bool, typer.Option("--write", help="Keep the new scores.")] = False,
+    json: Json = False,
+) -> None:
+    """Score recorded episodes again with today's checkers; nothing is played."""
+    from adamo_vh.cli.study_folders import score_and_show
+
+    score_and_show(folder, diff=diff, write=write, as_json=json)
+
+
+@study_app.command()
 def reindex(
     study: Annotated[Path, typer.Argument(help="The folder of a study.")], json: Json = False
 ) -> None:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import shutil
+import warnings
 from pathlib import Path
 from typing import Unpack
 
 from adamo_vh.analysis.outcome import Outcome
+from adamo_vh.cognition.telling import fault
 from adamo_vh.errors import FileError, FolderInUseError, RecordError
 from adamo_vh.files import naming
 from adamo_vh.record.run_folder import LOCK, MANIFEST, RESULT, FolderLock, reserve
+from adamo_vh.session.explaining import explain_run
 from adamo_vh.session.parts import Parts
 from adamo_vh.session.runs import resume_episode
 from adamo_vh.session.session import Session
 from adamo_vh.study.plan import Planned
-from adamo_vh.study.store import EPISODES, episode_folder, finished
+from adamo_vh.study.store import EPISODES, episode_folder, finished, lacks_diagnosis
 
 ASIDE = "set-aside"
 """Folder of records that could not be gone on with."""
@@ -37,10 +40,10 @@ def play(study: Path, planned: Planned, **parts: Unpack[Parts]) -> Outcome:
         RecordError: Its record is damaged.
         FileError: The folder cannot be written.
     """
+    folder = episode_folder(study, planned.key)
     before = finished(study, planned)
     if before is not None and before.is_scored:
-        return before
-    folder = episode_folder(study, planned.key)
+        return _explained(study, planned, before, parts)
     if not _gone_on(study, folder, planned.key, parts):
         config = planned.config
         with Session.begin(config, folder, page=False, **parts) as session:
@@ -52,7 +55,24 @@ def play(study: Path, planned: Planned, **parts: Unpack[Parts]) -> Outcome:
             f"{folder / RESULT} is not written: the disk may be full. Free some room; the same "
             "command then goes on."
         )
-    return outcome
+    return _explained(study, planned, outcome, parts)
+
+
+def _explained(study: Path, planned: Planned, outcome: Outcome, parts: Parts) -> Outcome:
+    """The outcome with the reason of its failure, if it is one; the score needs none."""
+    if not lacks_diagnosis(study, outcome):
+        return outcome
+    try:
+        explain_run(
+            episode_folder(study, planned.key), parts.get("engine"), task=planned.config.own_task
+        )
+    except FileError:
+        raise
+    except Exception as error:
+        # Whatever fails in it, the episode was played and scored.
+        warnings.warn(f"{planned.key} is not explained: {fault(error)}", stacklevel=2)
+        return outcome
+    return finished(study, planned) or outcome
 
 
 def _gone_on(study: Path, folder: Path, key: str, parts: Parts) -> bool:

@@ -87,7 +87,7 @@ def run_study(
     with ExitStack() as stack:
         store = stack.enter_context(Store(folder, study, episodes))
         tally = Tally(mine, store.outcomes)
-        left = [one for one in mine if not store.is_scored(one.key)]
+        left = [one for one in mine if not store.is_done(one.key)]
         in_flight = means.in_flight or default_in_flight(study.models)
         setup = Setup(folder.absolute(), means.frame_cache, means.rates)
         executor = LocalExecutor(setup, min(means.workers, len(left)), in_flight)

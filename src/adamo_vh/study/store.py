@@ -14,6 +14,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Self
 
+from adamo_vh.analysis.diagnosis.finding import DIAGNOSIS, read_diagnosis
 from adamo_vh.analysis.outcome import Outcome, outcome_of
 from adamo_vh.episode.result import read_manifest, read_result
 from adamo_vh.errors import AdamoError, ConfigError, FileError, RecordError
@@ -67,10 +68,32 @@ def finished(folder: Path, planned: Planned) -> Outcome | None:
         repetition=planned.repetition,
         axes=dict(cell.axes),
         run=f"{EPISODES}/{planned.key}",
+        task=planned.config.own_task,
+        diagnosis=_diagnosis(run),
     )
     # Called as in the plan: a model that draws lots has its seed in its own name, which would make
     # a cell of every episode.
     return replace(outcome, scene=cell.scene, task=cell.task, model=cell.model)
+
+
+def lacks_diagnosis(folder: Path, outcome: Outcome) -> bool:
+    """Whether an episode failed and nobody has said why: it was killed between the two.
+
+    Args:
+        folder: The study's.
+        outcome: The episode's.
+    """
+    failed = outcome.completion is not None and outcome.completion < 1
+    return failed and not (episode_folder(folder, outcome.key) / DIAGNOSIS).exists()
+
+
+def _diagnosis(run: Path) -> tuple[str, str]:
+    """Class and code of a failure; empty where there is none."""
+    path = run / DIAGNOSIS
+    if not path.exists():
+        return "", ""
+    found = read_diagnosis(read_json(path))
+    return str(found.class_ or ""), str(found.code or "")
 
 
 def write_study(folder: Path, study: Study, episodes: Iterable[Planned]) -> None:
@@ -168,10 +191,12 @@ class Store:
                 "another --out, or give the command with which it was begun."
             )
 
-    def is_scored(self, key: str) -> bool:
-        """Whether an episode needs no playing any more."""
+    def is_done(self, key: str) -> bool:
+        """Whether an episode needs no playing any more: it has its score and, if it failed, why."""
         outcome = self.outcomes.get(key)
-        return outcome is not None and outcome.is_scored
+        if outcome is None or not outcome.is_scored:
+            return False
+        return not lacks_diagnosis(self.folder, outcome)
 
     def add(self, outcome: Outcome) -> None:
         """Note what came of an episode.

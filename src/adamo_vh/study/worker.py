@@ -5,15 +5,15 @@ from __future__ import annotations
 import os
 import threading
 import time
-import traceback
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
 
 from adamo_vh.action_server.frame_cache import FrameCache
+from adamo_vh.analysis.outcome import Outcome
+from adamo_vh.cognition.telling import fault
 from adamo_vh.errors import (
     AdamoError,
     ConfigError,
@@ -113,12 +113,10 @@ class Player:
             again = isinstance(error, FolderInUseError) or not isinstance(error, _NO_USE)
             return Failed(planned.key, str(error), again=again)
         except Exception as error:
-            where = traceback.extract_tb(error.__traceback__)[-1]
-            place = f"{where.name}, {where.filename}, line {where.lineno}"
-            return Failed(planned.key, f"{type(error).__name__}: {error} ({place})", again=True)
+            return Failed(planned.key, fault(error), again=True)
         return Finished(planned.key, outcome)
 
-    def _outcome(self, planned: Planned, pulse: Pulse) -> Any:
+    def _outcome(self, planned: Planned, pulse: Pulse) -> Outcome:
         deadline = time.monotonic() + _IN_USE_S
         while True:
             try:
