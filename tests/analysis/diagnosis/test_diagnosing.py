@@ -62,7 +62,7 @@ CASES: dict[str, tuple[str, Sequence[Said], Code]] = {
     "beside another one": ("T5", [pick(4), drop(4, -0.26, -0.33, 0.78), DONE], Code.WRONG_ANCHOR),
     "a tag of nothing": ("T2", [pick(99)] * 4, Code.UNKNOWN_TAG),
     "back on the table": ("T4", [pick(57), drop(57, 0.2, -0.4, 0.78), DONE], Code.WRONG_SUPPORT),
-    "half a metre away": ("T5", [pick(4), drop(4, -0.3, -1.25, 0.78), DONE], Code.TOO_FAR),
+    "half a metre away": ("T5", [pick(4), drop(4, -0.15, -1.25, 0.78), DONE], Code.TOO_FAR),
     "not in a corner": ("T7", [pick(2), drop(2, -1.6, -1.0), DONE], Code.OUTSIDE_AREA),
     "kept in the hand": ("T4", [pick(57), DONE], Code.NOT_RELEASED),
     "outside the room": ("T4", [pick(57), *[drop(57, 40.0, 0.0)] * 4], Code.REFUSED),

@@ -10,7 +10,15 @@ from adamo_vh.analysis.claims import claims_success
 from adamo_vh.analysis.diagnosis.cause import Cause
 from adamo_vh.analysis.diagnosis.finding import Code
 from adamo_vh.analysis.diagnosis.refusals import is_refused, refusal, streak
-from adamo_vh.analysis.diagnosis.story import DROP, PICK, Story, call_text, quoted
+from adamo_vh.analysis.diagnosis.story import (
+    DROP,
+    PICK,
+    WALK,
+    Moment,
+    Story,
+    call_text,
+    quoted,
+)
 from adamo_vh.benchmark.taxonomy import Ref
 from adamo_vh.inference.model import Ending
 from adamo_vh.record.termination import TerminationReason
@@ -24,6 +32,8 @@ _FAILED = {
 _HALF = 0.5
 _REPEATS = 3
 """The same call into the same state so often is a loop."""
+_AT_M = 0.3
+"""A gaze that ends this close to an object is at it."""
 _LATE = 3
 """Progress within the last part of the steps, one of so many, means that it was on its way."""
 _SOON = 6
@@ -163,9 +173,10 @@ def ended_by_agent(story: Story, object_id: int) -> Cause:
 
 
 def _searched_since(story: Story, object_id: int) -> bool:
-    """Whether the agent went on looking round, after all that it did with its hand.
+    """Whether the agent went on looking elsewhere, after all that it did with its hand.
 
-    What it did before the object was in view does not count: then there was reason to look.
+    What it did before the object was in view does not count: then there was reason to look. Nor
+    does a look at the object itself.
     """
     since = max(
         [m.step for m in story.moments if m.is_done and m.act and m.act.name in (PICK, DROP)],
@@ -173,7 +184,15 @@ def _searched_since(story: Story, object_id: int) -> bool:
     )
     seen = [m.step for m in story.moments if object_id in m.seen]
     since = max(since, seen[0] if seen else 0)
-    return any(act.step > since and not is_refused(act) for act in story.acts)
+    return any(m.step > since and m.is_done and not _at(m, object_id) for m in story.moments)
+
+
+def _at(moment: Moment, object_id: int) -> bool:
+    """Whether an act was a look at an object."""
+    item, act = moment.object(object_id), moment.act
+    is_look = act is not None and act.name not in (WALK, PICK, DROP)
+    gaze = moment.state.body.gaze
+    return is_look and item is not None and gaze.distance(item.box.center) <= _AT_M
 
 
 def _is_passed_over(story: Story) -> bool:

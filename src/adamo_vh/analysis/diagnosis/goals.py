@@ -134,13 +134,14 @@ def _still_held(story: Story, condition: Aim, loop: Cause | None) -> Cause:
     if (cause := protocol_cause(story)) is not None:
         return cause
     since = [act for act in story.acts if act.step > first.step]
-    if (last := streak(story, since)) is not None:
+    last = streak(story, since)
+    if last is not None and last.feedback.code != action.Code.HAND_FULL:
         return refusal(story, last, condition.id)
     early = [act for act in drops if act.feedback.code == action.Code.HAND_EMPTY]
     if early:
         text = f"Step {early[0].step}, {call_text(early[0])}, came before {name} was taken."
         return Cause(Code.WRONG_ORDER, early[0].step, text, condition.id)
-    if story.ended.reason is not TerminationReason.ANSWERED:
+    if story.ended.reason is not TerminationReason.ANSWERED and last is None:
         return loop or stopped_by_limit(story, condition.id)
     text = f"{name} was taken in step {first.step} and is still in the hand; it was to be put down."
     return Cause(Code.NOT_RELEASED, taken.step, text, condition.id)

@@ -17,7 +17,7 @@ from adamo_vh.geometry import Solid, gaps
 
 _BESIDE_M = 0.08
 """Two things with no more than this between them lie beside each other."""
-_ELSEWHERE = 2.5
+_ELSEWHERE = 2.0
 """So many times the limit away from its anchor, a thing beside another one was put to that one."""
 
 

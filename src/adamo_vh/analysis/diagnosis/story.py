@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from adamo_vh.action import Drop, Outcome, Pick, action_name
+from adamo_vh.action import Drop, Outcome, Pick, Walk, action_name
 from adamo_vh.action_server import LocalActionServer
 from adamo_vh.benchmark.distance import calls_left
 from adamo_vh.benchmark.tasks import Task
@@ -16,7 +16,7 @@ from adamo_vh.geometry import Vec3
 from adamo_vh.perception import PerceptionConfig, Tagger
 from adamo_vh.record.trajectory import Acted, Ended, Observed, Started, Thought, Trajectory
 
-PICK, DROP = action_name(Pick), action_name(Drop)
+PICK, DROP, WALK = action_name(Pick), action_name(Drop), action_name(Walk)
 _LONGEST_QUOTE = 120
 
 
