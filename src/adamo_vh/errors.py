@@ -13,6 +13,7 @@
     │   ├── ModelConfigError   unknown model, missing extra, missing key: no retry helps
     │   ├── ProviderError      the provider failed after all retries
     │   │   └── RefusedError   the provider refuses the request as it is: no waiting helps
+    │   ├── BudgetError        the budget of a whole study is used up: nothing was asked
     │   └── CassetteError      the recorded calls do not fit what is asked now
     └── RecordError            a run folder is missing, damaged or of another version
         └── FolderInUseError   somebody else writes the run folder now
@@ -100,6 +101,10 @@ class ProviderError(ModelError):
 
 class RefusedError(ProviderError):
     """The provider refuses the request as it is; unlike a fault, no waiting helps."""
+
+
+class BudgetError(ModelError):
+    """The budget of a whole study is used up: the model was not asked; nothing is broken."""
 
 
 class CassetteError(ModelError):

@@ -64,6 +64,12 @@ def bench(
         int | None,
         typer.Option(help="Episodes at once in each; 1, or 16 for remote models, by default."),
     ] = None,
+    budget: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A cap on the whole study: tokens=5000000, usd=20 or calls=3000; may be repeated."
+        ),
+    ] = None,
     shard: Annotated[
         str, typer.Option(help="Play part I of N of the study: I/N; see adamo-vh merge.")
     ] = "1/1",
@@ -80,6 +86,12 @@ def bench(
     tokens_per_minute: Annotated[
         int | None, typer.Option(help="Tokens a minute of each provider, for all processes.")
     ] = None,
+    dry_run: Annotated[
+        bool,
+        typer.Option(
+            "--dry-run", help="List the episodes, forecast tokens, money and hours; start nothing."
+        ),
+    ] = False,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -92,7 +104,8 @@ def bench(
 ) -> None:
     """Play a study: tasks x scenes x labelings x models x ...; the same command again goes on."""
     from adamo_vh.cli.bench import play_and_show
-    from adamo_vh.cli.settings import axes_of, read_shard, values_of
+    from adamo_vh.cli.settings import axes_of, pairs, read_budget, read_shard, values_of
+    from adamo_vh.cli.study_forecast import forecast_and_show
     from adamo_vh.study.limiter import Rates
     from adamo_vh.study.running import Means, default_workers
     from adamo_vh.study.study_file import read_study
@@ -113,10 +126,14 @@ def bench(
         workers=default_workers() if workers is None else workers,
         in_flight=in_flight,
         shard=read_shard(shard),
+        budget=read_budget(pairs(budget, "budget")),
         frame_cache=frame_cache,
         rates=Rates(concurrent, requests_per_minute, tokens_per_minute),
     )
-    play_and_show(planned, out, means, as_json=json)
+    if dry_run:
+        forecast_and_show(planned, out, means, as_json=json)
+    else:
+        play_and_show(planned, out, means, as_json=json)
 
 
 @study_app.command()

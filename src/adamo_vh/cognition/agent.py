@@ -19,7 +19,7 @@ from adamo_vh.cognition.stops import Errand, Stops
 from adamo_vh.cognition.telling import Telling, fault
 from adamo_vh.cognition.turns import offered, read_turn
 from adamo_vh.engine import WorldEvent
-from adamo_vh.errors import ModelError
+from adamo_vh.errors import BudgetError, ModelError
 from adamo_vh.inference.messages import AIMessage
 from adamo_vh.inference.model import Model, Sampling, Spent
 from adamo_vh.inference.tidy import tidied
@@ -113,6 +113,8 @@ class Agent:
         """
         try:
             return self._end(self._pursue(instruction))
+        except BudgetError as error:
+            return self._end(Stop(TerminationReason.RUN_BUDGET, str(error)))
         except Exception as error:
             spent = error.spent if isinstance(error, ModelError) else None
             return self._end(Stop(TerminationReason.BROKEN, answer=fault(error), spent=spent))

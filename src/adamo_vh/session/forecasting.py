@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from adamo_vh.action import ToolSchema
+from adamo_vh.action_server import LocalActionServer
 from adamo_vh.cognition.budget import Budget
-from adamo_vh.cognition.forecast import Forecast, forecast
+from adamo_vh.cognition.forecast import SECONDS_PER_CALL, Forecast, forecast
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
 from adamo_vh.cognition.turns import offered
 from adamo_vh.engine import World
@@ -13,9 +15,11 @@ from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.cost.prices import cost_usd
 from adamo_vh.inference.cost.tokens import estimate_image, estimate_request, rule_for
+from adamo_vh.inference.messages import Message
 from adamo_vh.inference.model import Model, ModelKind, Usage
 from adamo_vh.inference.players.cassette import Cassette
 from adamo_vh.inference.registry import is_remote
+from adamo_vh.observation import Observation
 from adamo_vh.record.run_folder import check_unused
 from adamo_vh.session.bodies import instructions, open_server
 
@@ -43,25 +47,61 @@ def forecast_episodes(config: EpisodeConfig, engine: World, episodes: int = 1) -
     Raises:
         ConfigError: The user's price table is damaged.
     """
-    profile, rule = config.profile, rule_for(config.model)
     server = open_server(config, engine)
+    prompt, tools = first_prompt(config, engine, server, server.observe().observation)
+    first = estimate_request(prompt, tools, rule_for(config.model))
+    return forecast_from(config, first, episodes)
+
+
+def first_prompt(
+    config: EpisodeConfig, engine: World, server: LocalActionServer, view: Observation
+) -> tuple[list[Message], tuple[ToolSchema, ...]]:
+    """What a model is sent first, and the tools on offer.
+
+    Args:
+        config: How the episode is set up.
+        engine: Its engine, just reset.
+        server: Of that engine.
+        view: The first one.
+    """
     words = instructions(config, engine, server)
-    memory = ShortTermMemory(words, config.k, profile, config.text_form)
-    memory.instruct(config.instruction, server.observe().observation)
-    first = estimate_request(memory.messages(), offered(server.actions, profile), rule)
+    memory = ShortTermMemory(words, config.k, config.profile, config.text_form)
+    memory.instruct(config.instruction, view)
+    return memory.messages(), tuple(offered(server.actions, config.profile))
+
+
+def forecast_from(
+    config: EpisodeConfig,
+    first: int,
+    episodes: int = 1,
+    seconds_per_call: float = SECONDS_PER_CALL,
+) -> Forecast:
+    """Forecast what episodes take.
+
+    Args:
+        config: How they are set up.
+        first: Tokens of their first request.
+        episodes: How many there will be.
+        seconds_per_call: How long the model takes.
+    """
     # A profile that keeps only the last pictures does not add any.
-    looks = 0.0 if profile.pictures else _LOOKS_PER_CALL
-    picture = looks * estimate_image(*config.resolution, rule)
-    task = config.scored_task
-    calls = USUAL_CALLS if task is None else 1.0 + task.computed.act
+    looks = 0.0 if config.profile.pictures else _LOOKS_PER_CALL
+    picture = looks * estimate_image(*config.resolution, rule_for(config.model))
     return forecast(
         config.model,
-        calls_expected=calls,
+        calls_expected=calls_expected(config),
         first_request_tokens=first,
         growth_per_call_tokens=round(_TOKENS_PER_CALL + picture),
         output_per_call=_OUTPUT_PER_CALL,
         episodes=episodes,
+        seconds_per_call=seconds_per_call,
     )
+
+
+def calls_expected(config: EpisodeConfig) -> float:
+    """How many model calls an episode is taken to need."""
+    task = config.scored_task
+    return USUAL_CALLS if task is None else 1.0 + task.computed.act
 
 
 def check_price(uri: str, budget: Budget, model: Model | None = None) -> None:

@@ -72,22 +72,6 @@ def model_of(
     return model
 
 
-def is_remote(uri: str) -> bool:
-    """Whether a model is asked over a network; nothing is asked and no key is needed.
-
-    Raises:
-        ModelConfigError: The model is unknown.
-    """
-    prefix = uri.partition(":")[0]
-    if prefix in (*_REPEATS, "random") or prefix in plugin_names(MODELS):
-        return False
-    from adamo_vh.inference.remote.endpoint import parse_endpoint
-
-    check_remote_uri(uri)
-    parse_endpoint(uri)
-    return True
-
-
 def is_deterministic(uri: str) -> bool:
     """Whether a model plays the same episode again and again, whatever the seed of the episode.
 
@@ -97,13 +81,19 @@ def is_deterministic(uri: str) -> bool:
         ModelConfigError: The model is unknown.
     """
     prefix, _, rest = uri.partition(":")
-    if prefix in _REPEATS or is_remote(uri):
-        return prefix in _REPEATS
+    if prefix in _REPEATS:
+        return True
     if prefix == "random":
         return bool(rest)
-    model = model_of(uri)
-    model.info.close()
-    return model.info.kind in (ModelKind.RULE_BASED, ModelKind.SCRIPTED, ModelKind.REPLAY)
+    if prefix in plugin_names(MODELS):
+        model = model_of(uri)
+        model.info.close()
+        return model.info.kind in (ModelKind.RULE_BASED, ModelKind.SCRIPTED, ModelKind.REPLAY)
+    from adamo_vh.inference.remote.endpoint import parse_endpoint
+
+    check_remote_uri(uri)
+    parse_endpoint(uri)
+    return False
 
 
 def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None) -> Profile:

@@ -8,9 +8,13 @@ from contextlib import ExitStack, closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from adamo_vh.cognition.budget import Budget
 from adamo_vh.errors import ConfigError
+from adamo_vh.inference.registry import is_remote
 from adamo_vh.session.builtin import check_scene
-from adamo_vh.session.minds import is_remote, model_of
+from adamo_vh.session.forecasting import check_price
+from adamo_vh.session.minds import model_of
+from adamo_vh.study.ledger import StudyLedger, check_caps
 from adamo_vh.study.limiter import Rates
 from adamo_vh.study.local import LocalExecutor
 from adamo_vh.study.plan import Planned, Study, plan
@@ -35,6 +39,8 @@ class Means:
     """Episodes at once in each; None for 1, or 16 if a model is remote."""
     shard: tuple[int, int] = (1, 1)
     """Which part of the plan, of how many: 1/4 to 4/4 are played by four machines."""
+    budget: Budget = field(default=Budget())
+    """Of the whole study."""
     frame_cache: bool = True
     """Whether views that episodes share are drawn once in each process."""
     rates: Rates = field(default=Rates())
@@ -42,6 +48,7 @@ class Means:
 
     def __post_init__(self) -> None:
         """Refuse what is nothing to play with."""
+        check_caps(self.budget)
         if not 1 <= self.workers <= _MOST_WORKERS:
             raise ConfigError(f"workers is {self.workers}: use 1 to {_MOST_WORKERS}.")
         if self.in_flight is not None and not 1 <= self.in_flight <= _MOST_IN_FLIGHT:
@@ -83,13 +90,14 @@ def run_study(
     """
     episodes = plan(study)
     mine = ordered(sharded(episodes, means.shard))
-    check_parts(mine)
+    check_parts(mine, means.budget)
     with ExitStack() as stack:
         store = stack.enter_context(Store(folder, study, episodes))
         tally = Tally(mine, store.outcomes)
         left = [one for one in mine if not store.is_done(one.key)]
         in_flight = means.in_flight or default_in_flight(study.models)
-        setup = Setup(folder.absolute(), means.frame_cache, means.rates)
+        StudyLedger(folder, means.budget).begin(store.outcomes.values())
+        setup = Setup(folder.absolute(), means.frame_cache, means.budget, means.rates)
         executor = LocalExecutor(setup, min(means.workers, len(left)), in_flight)
         stack.callback(executor.close)
         supervisor = Supervisor(store, executor, tally)
@@ -108,19 +116,22 @@ def ordered(episodes: Iterable[Planned]) -> list[Planned]:
     return sorted(episodes, key=lambda one: (one.config.scene, one.config.figure, one.variation))
 
 
-def check_parts(episodes: Iterable[Planned]) -> None:
+def check_parts(episodes: Iterable[Planned], budget: Budget | None = None) -> None:
     """Make sure that every scene and model is there, before anything is started or paid for.
 
     Raises:
         SceneError: A scene is unknown or wrong.
         ModelConfigError: A model is unknown or lacks a key or an extra.
         ModelError: A model has to be asked what it can do, and cannot be reached.
+        ConfigError: There is a budget of money, and the price of a model is not known.
     """
     for scene in dict.fromkeys(one.config.scene for one in episodes):
         check_scene(scene)
     models = {(one.config.model, one.config.tool_calls): one.config for one in episodes}
     for config in models.values():
-        model_of(config.model, tools=config.tool_calls, profile=config.profile).info.close()
+        model = model_of(config.model, tools=config.tool_calls, profile=config.profile)
+        check_price(config.model, budget or Budget(), model)
+        model.info.close()
 
 
 def default_in_flight(models: Iterable[str]) -> int:

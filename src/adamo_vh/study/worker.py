@@ -7,12 +7,14 @@ import threading
 import time
 import warnings
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 from adamo_vh.action_server.frame_cache import FrameCache
 from adamo_vh.analysis.outcome import Outcome
+from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.telling import fault
 from adamo_vh.errors import (
     AdamoError,
@@ -23,11 +25,15 @@ from adamo_vh.errors import (
     RecordError,
     SceneError,
 )
+from adamo_vh.inference.model import Model
+from adamo_vh.inference.registry import is_remote
 from adamo_vh.inference.remote.gate import through
 from adamo_vh.observation import Frame
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Event
+from adamo_vh.session.minds import model_of
 from adamo_vh.study.executor import Failed, Finished, Noted, Report
+from adamo_vh.study.ledger import StudyLedger, budgeted
 from adamo_vh.study.limiter import LIMITS, Limiter, Rates
 from adamo_vh.study.plan import Planned
 from adamo_vh.study.playing import play
@@ -57,6 +63,8 @@ class Setup:
     """The study's."""
     frame_cache: bool = True
     """Whether views that episodes share are drawn once."""
+    budget: Budget = field(default=Budget())
+    """Of the whole study."""
     rates: Rates = field(default=Rates())
     """How much each provider may be asked by all workers together."""
 
@@ -88,6 +96,7 @@ class Player:
         self._engines = Engines()
         self._frames = FrameCache() if setup.frame_cache else None
         self._limiter = Limiter(setup.folder / LIMITS, setup.rates)
+        self._ledger = StudyLedger(setup.folder, setup.budget)
         self._pulses: dict[str, Pulse] = {}
 
     @property
@@ -120,11 +129,14 @@ class Player:
         deadline = time.monotonic() + _IN_USE_S
         while True:
             try:
-                with through(self._limiter), self._engines.lent(planned.config) as engine:
+                with ExitStack() as stack:
+                    stack.enter_context(through(self._limiter))
+                    engine = stack.enter_context(self._engines.lent(planned.config))
                     outcome = play(
                         self._setup.folder,
                         planned,
                         engine=engine,
+                        model=self._mind(planned, stack),
                         observers=(pulse,),
                         frame_cache=self._frames,
                     )
@@ -135,6 +147,17 @@ class Player:
                 if time.monotonic() > deadline:
                     raise
                 time.sleep(0.2)
+
+    def _mind(self, planned: Planned, stack: ExitStack) -> Model | None:
+        """A model that spends the study's budget; None for one that costs nothing."""
+        config = planned.config
+        if not is_remote(config.model):
+            return None
+        model = model_of(
+            config.model, tools=config.tool_calls, profile=config.profile, seed=config.seed
+        )
+        stack.callback(model.info.close)
+        return budgeted(model, config.model, planned.key, self._ledger)
 
 
 def work(pipe: Connection, setup: Setup) -> None:
