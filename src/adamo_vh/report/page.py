@@ -17,6 +17,7 @@ from typing import TypeVar
 
 from markupsafe import Markup
 
+from adamo_vh.analysis.diagnosis.finding import Diagnosis, load_diagnosis
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import (
@@ -31,6 +32,7 @@ from adamo_vh.perception import Labeling
 from adamo_vh.record.run_folder import FRAMES
 from adamo_vh.record.trajectory import Ended, Trajectory, read_trajectory
 from adamo_vh.report.exchanges import exchanges
+from adamo_vh.report.failure import facts
 from adamo_vh.report.floor_plan import FloorPlan, floor_plan
 from adamo_vh.report.summary import KINDS, Account, ending, verdict
 from adamo_vh.report.templating import environment, template_text
@@ -81,6 +83,7 @@ def write_page(folder: Path) -> Path:
         result,
         lambda name: (folder / FRAMES / name).read_bytes(),
         missing,
+        read(load_diagnosis, lambda: None),
     )
     return write_whole(folder / PAGE, page.encode("utf-8", "xmlcharrefreplace"))
 
@@ -110,6 +113,7 @@ def render_page(
     result: EpisodeResult | None,
     frames: Callable[[str], bytes],
     missing: Sequence[str] = (),
+    diagnosis: Diagnosis | None = None,
 ) -> str:
     """Render the page of an episode.
 
@@ -120,6 +124,7 @@ def render_page(
         frames: Gives a recorded picture by its name. A picture that it fails to find (`OSError`,
             `LookupError`) is shown as missing.
         missing: What of the record could not be read, a line each.
+        diagnosis: Why it failed; None if that was not asked.
 
     Returns:
         A complete HTML document without any reference to the outside.
@@ -148,6 +153,9 @@ def render_page(
             kind=KINDS[manifest.model_kind],
             plan=_plan(manifest, trajectory, steps, result),
             named=_naming(manifest),
+            diagnosis=diagnosis,
+            facts=facts(diagnosis, steps, _checked(frames)) if diagnosis else (),
+            crop=_jpeg_url,
             picture=lambda name: _data_url(name, frames),
             style=Markup(style),  # Ours, and named by its hash in the page's policy.
             script=Markup(script),
@@ -199,7 +207,26 @@ def _data_url(name: str, frames: Callable[[str], bytes]) -> str | None:
         data = frames(name)
     except (OSError, LookupError):
         return None
-    return f"data:{_MEDIA_TYPE[match[1]]};base64,{base64.b64encode(data).decode('ascii')}"
+    return _inlined(_MEDIA_TYPE[match[1]], data)
+
+
+def _jpeg_url(data: bytes) -> str:
+    return _inlined("image/jpeg", data)
+
+
+def _inlined(media_type: str, data: bytes) -> str:
+    return f"data:{media_type};base64,{base64.b64encode(data).decode('ascii')}"
+
+
+def _checked(frames: Callable[[str], bytes]) -> Callable[[str], bytes]:
+    """The same pictures; a name that is none of a picture names nothing."""
+
+    def frame(name: str) -> bytes:
+        if _FRAME_NAME.fullmatch(name) is None:
+            raise LookupError(name)
+        return frames(name)
+
+    return frame
 
 
 def _csp_hash(text: str) -> str:

@@ -16,6 +16,7 @@ from adamo_vh.errors import FileError
 from adamo_vh.files import write_whole
 from adamo_vh.perception import Tagger
 from adamo_vh.record.trajectory import read_trajectory
+from adamo_vh.report.page import PAGE, try_page
 from adamo_vh.session.bodies import opened
 
 
@@ -50,4 +51,6 @@ def explain_run(
     except FileError as error:
         # What was found is not lost for a folder that cannot be written.
         warnings.warn(f"the diagnosis is not kept: {error}", stacklevel=2)
+    if (path / PAGE).exists():
+        try_page(path)
     return found

@@ -6,7 +6,16 @@ from adamo_vh.analysis.diagnosis.finding import (
     Diagnosis,
     Evidence,
     FailureClass,
+    load_diagnosis,
     read_diagnosis,
 )
 
-__all__ = ["Code", "Diagnosis", "Evidence", "FailureClass", "diagnose", "read_diagnosis"]
+__all__ = [
+    "Code",
+    "Diagnosis",
+    "Evidence",
+    "FailureClass",
+    "diagnose",
+    "load_diagnosis",
+    "read_diagnosis",
+]

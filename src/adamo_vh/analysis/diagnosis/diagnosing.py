@@ -120,7 +120,7 @@ def _summary(story: Story, cause: Cause) -> str:
     )
     steps = f"{story.last} {'step' if story.last == 1 else 'steps'}"
     asked = story.manifest.config.instruction.rstrip(".")
-    return f"Asked: {asked}. After {steps} {came}. {cause.text} {cause.code.meaning}"
+    return f"Asked: {asked}. After {steps} {came}. {cause.text}"
 
 
 def _evidence(story: Story, first: Cause, found: list[Cause]) -> Iterator[Evidence]:
@@ -140,9 +140,10 @@ def _evidence(story: Story, first: Cause, found: list[Cause]) -> Iterator[Eviden
         if cause is not first and cause.text != first.text:
             yield Evidence(cause.step, f"Besides: {cause.text}")
     if first.code.failure_class is not FailureClass.PROTOCOL:
-        how = story.ended.reason.replace("_", " ")
-        said = f": “{quoted(story.ended.answer)}”" if story.ended.answer.strip() else ""
-        yield Evidence(story.last, f"The episode ended by {how}{said}.")
+        said = quoted(story.ended.answer)
+        how = story.ended.why or story.ended.reason.replace("_", " ")
+        text = f"The agent ended it: “{said}”" if said else f"What ended it: {how.rstrip('.')}."
+        yield Evidence(story.last, text)
 
 
 def _path(story: Story) -> Iterator[Evidence]:

@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from adamo_vh.errors import RecordError
+from adamo_vh.errors import FileError, RecordError
+from adamo_vh.files import read_json
 
 DIAGNOSIS = "diagnosis.json"
 """Name of its file in a run folder."""
@@ -171,3 +173,21 @@ def read_diagnosis(data: Mapping[str, Any]) -> Diagnosis:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"]) or "data"
         raise RecordError(f"A diagnosis cannot be read: {where}: {first['msg']}") from None
+
+
+def load_diagnosis(folder: Path) -> Diagnosis | None:
+    """The diagnosis that is kept in a run folder; None if none was made.
+
+    Raises:
+        RecordError: The file is damaged.
+    """
+    path = folder / DIAGNOSIS
+    if not path.exists():
+        return None
+    try:
+        data = read_json(path)
+    except FileError as error:
+        raise RecordError(str(error)) from None
+    if not isinstance(data, dict):
+        raise RecordError(f"{path} is damaged: it is no JSON object.")
+    return read_diagnosis(data)
