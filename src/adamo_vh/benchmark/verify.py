@@ -30,6 +30,8 @@ class Verification:
     oracle_strict: float
     idle: float
     """Completion of doing nothing."""
+    problems: tuple[str, ...] = ()
+    """What is met before anything is done, and what the oracle leaves open or spoils."""
 
     @property
     def is_sound(self) -> bool:
@@ -46,6 +48,8 @@ def verify_tasks(
         start = engine.state()
         idle = score(start, start, task)
         played = play_oracle(engine, labeling, task, task.goals)
+        met = [c.text for c in idle.conditions if c.satisfied]
+        left = [c.text for c in played.conditions if not c.satisfied]
         yield Verification(
             engine.scene.name,
             labeling,
@@ -53,6 +57,11 @@ def verify_tasks(
             played.completion,
             played.strict,
             idle.completion,
+            (
+                *(f"is so at the start: {text}" for text in met),
+                *(f"the oracle cannot do it: {text}" for text in left),
+                *(f"the oracle spoils something: {text}" for text in played.violations),
+            ),
         )
 
 

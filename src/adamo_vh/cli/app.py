@@ -9,6 +9,7 @@ import typer
 
 from adamo_vh.cli.exits import listed
 from adamo_vh.cli.study_app import study_app
+from adamo_vh.cli.tasks_app import tasks_app
 from adamo_vh.inference.uris import HELP
 
 app = typer.Typer(
@@ -17,7 +18,6 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-tasks_app = typer.Typer(help="The benchmark's tasks.", invoke_without_command=True)
 app.add_typer(tasks_app, name="tasks")
 scenes_app = typer.Typer(help="The scenes, built-in and own.", invoke_without_command=True)
 app.add_typer(scenes_app, name="scenes")
@@ -76,7 +76,9 @@ def run(
     instruction: Annotated[
         str | None, typer.Argument(help="What the agent is told.", show_default=False)
     ] = None,
-    task: Annotated[str | None, typer.Option(help="A benchmark task instead: T1 to T15.")] = None,
+    task: Annotated[
+        str | None, typer.Option(help="A task instead: T1 to T15, or a task file.")
+    ] = None,
     scene: Scene = "s1",
     figure: Figure = "mara",
     labeling: Labeling = "sem",
@@ -208,26 +210,6 @@ def explain(
     from adamo_vh.cli.explain import explain_and_show
 
     explain_and_show(run_dir, as_json=json)
-
-
-@tasks_app.callback()
-def tasks(context: typer.Context, json: Json = False) -> None:
-    """List the tasks with their C-D levels."""
-    if context.invoked_subcommand is None:
-        from adamo_vh.cli.tasks import list_tasks
-
-        list_tasks(as_json=json)
-
-
-@tasks_app.command("verify")
-def tasks_verify(
-    scene: Annotated[str | None, typer.Option(help="One scene; all by default.")] = None,
-    json: Json = False,
-) -> None:
-    """Prove that the oracle solves every task and that doing nothing solves none."""
-    from adamo_vh.cli.tasks import verify
-
-    verify(scene, as_json=json)
 
 
 @scenes_app.callback()

@@ -1,8 +1,9 @@
-"""`adamo-vh tasks` and `adamo-vh tasks verify`."""
+"""`adamo-vh tasks`, and `verify` and `check` below it."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 import typer
 from rich.console import Console
@@ -12,6 +13,9 @@ from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.terminal import put_json, say
 from adamo_vh.perception import Labeling
+
+if TYPE_CHECKING:
+    from adamo_vh.session.proving import Proof
 
 
 def list_tasks(*, as_json: bool) -> None:
@@ -70,3 +74,46 @@ def verify(scene: str | None, *, as_json: bool) -> None:
         put_json({"tasks": [asdict(row) for row in rows]})
     if not all(row.is_sound for row in rows):
         raise typer.Exit(Exit.NO)
+
+
+def check(file: str, scene: str | None, random_episodes: int, *, as_json: bool) -> None:
+    """Prove a task in every scene that it fits; exit 1 if it is unsound in any."""
+    from adamo_vh.benchmark.tasks import task as find_task
+    from adamo_vh.session.proving import prove
+
+    task = find_task(file)
+    if not as_json:
+        level = task.computed
+        say(f"{task.id}: {task.prompt}")
+        say(f"C-D level {level.total} (ACT {level.act}, REF {level.ref}, REL {level.rel})")
+    proofs: list[Proof] = []
+    for proof in prove(task, scene, random_episodes):
+        proofs.append(proof)
+        if not as_json:
+            _say_proof(proof)
+    sound = all(proof.is_sound for proof in proofs)
+    if as_json:
+        rows = [
+            {
+                **asdict(proof.found),
+                "random": proof.random,
+                "problems": proof.problems,
+                "sound": proof.is_sound,
+            }
+            for proof in proofs
+        ]
+        told = {"prompt": task.prompt, "computed": asdict(task.computed)}
+        put_json({"task": task.id, **told, "sound": sound, "scenes": rows})
+    if not sound:
+        raise typer.Exit(Exit.NO)
+
+
+def _say_proof(proof: Proof) -> None:
+    row = proof.found
+    luck = "not tried" if proof.random is None else f"{proof.random:.2f}"
+    say(
+        f"{'ok  ' if proof.is_sound else 'FAIL'} {row.scene} {row.labeling:<4} oracle "
+        f"{row.oracle:.2f} strict {row.oracle_strict:.0f} idle {row.idle:.2f} random {luck}"
+    )
+    for problem in proof.problems:
+        say(f"     {problem}")

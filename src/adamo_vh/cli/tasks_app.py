@@ -1,0 +1,48 @@
+"""The commands of `adamo-vh tasks`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+
+tasks_app = typer.Typer(help="The benchmark's tasks, and own ones.", invoke_without_command=True)
+
+
+@tasks_app.callback()
+def tasks(context: typer.Context, json: Json = False) -> None:
+    """List the tasks with their C-D levels."""
+    if context.invoked_subcommand is None:
+        from adamo_vh.cli.tasks import list_tasks
+
+        list_tasks(as_json=json)
+
+
+@tasks_app.command("verify")
+def verify(
+    scene: Annotated[str | None, typer.Option(help="One scene; all by default.")] = None,
+    json: Json = False,
+) -> None:
+    """Prove that the oracle solves every task and that doing nothing solves none."""
+    from adamo_vh.cli.tasks import verify
+
+    verify(scene, as_json=json)
+
+
+@tasks_app.command("check")
+def check(
+    file: Annotated[str, typer.Argument(help="A task file, or the id of a built-in task.")],
+    scene: Annotated[
+        str | None, typer.Option(help="One scene or scene file; all that it fits by default.")
+    ] = None,
+    random: Annotated[
+        int, typer.Option(min=0, max=1000, help="Episodes by lot in each scene; 0 for none.")
+    ] = 20,
+    json: Json = False,
+) -> None:
+    """Prove a task: the oracle solves it, doing nothing does not, and luck hardly ever does."""
+    from adamo_vh.cli.tasks import check
+
+    check(file, scene, random, as_json=json)
