@@ -1,0 +1,61 @@
+"""`adamo-vh tasks check` on good and bad files."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+GOOD = """
+id = "CUP"
+prompt = "Put the cup on the floor"
+units = ["pick", "drop", "tag", "floor"]
+conditions = [{ on_floor = 45 }]
+"""
+
+
+def run(*arguments: str) -> tuple[int, str, str]:
+    done = subprocess.run(
+        [sys.executable, "-m", "adamo_vh", *arguments], capture_output=True, text=True, check=False
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_a_sound_task(tmp_path: Path) -> None:
+    path = tmp_path / "cup.toml"
+    path.write_text(GOOD)
+    check = ("tasks", "check", str(path), "--scene", "s1", "--random", "2", "--json")
+    code, out, _ = run(*check)
+    told = json.loads(out)
+    assert (code, told["task"], told["sound"]) == (0, "CUP", True)
+    assert [(row["scene"], row["labeling"]) for row in told["scenes"]] == [
+        ("s1", "sem"), ("s1", "opaq"),
+    ]  # fmt: skip
+    assert told["computed"]["total"] == 4
+
+
+def test_an_unsound_task(tmp_path: Path) -> None:
+    path = tmp_path / "cup.toml"
+    path.write_text(GOOD.replace("on_floor = 45", 'on = { object = 45, surface = "table" }'))
+    code, out, _ = run("tasks", "check", str(path), "--scene", "s1", "--random", "0")
+    assert code == 1
+    assert "FAIL s1 sem" in out
+    assert "is so at the start: 45 on table" in out
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (GOOD.replace('"CUP"', "CUP"), "line 2"),
+        (GOOD.replace("45", '"cup"'), "conditions[0].on_floor: must be a whole number"),
+    ],
+)
+def test_a_wrong_file_is_one_line(tmp_path: Path, text: str, told: str) -> None:
+    path = tmp_path / "cup.toml"
+    path.write_text(text)
+    code, out, err = run("tasks", "check", str(path))
+    assert (code, out) == (2, "")
+    assert told in err and len(err.strip().splitlines()) == 1
