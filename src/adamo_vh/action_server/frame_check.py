@@ -6,6 +6,7 @@ an object must hit it, and objects that a ray hits must have their pixels.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,8 @@ _FEWEST = 3
 """So many rays tell something."""
 _MISSES = 0.5
 """Share of rays that may miss: thin things, edges, what the body's own arms hide."""
+_STEEPEST = -math.sin(math.radians(35.0))
+"""Upward part of a ray's direction below which the body's own trunk may hide what it hits."""
 
 
 def frame_fault(percept: Percept, state: WorldState, body: Body) -> str:
@@ -110,6 +113,11 @@ def _left_out(percept: Percept, room: _Room, body: Body) -> str:
     size = np.array([camera.width_px, camera.height_px])
     inside = (seen[:, 2] > 0) & (seen[:, :2] >= 0).all(axis=1) & (seen[:, :2] < size).all(axis=1)
     there = np.flatnonzero(inside & (room.ids != (NOTHING if room.held is None else room.held)))
+    # Rays pass the body and what it holds, which hide things all the same.
+    there = there[camera.rays(seen[there, :2])[:, 2] > _STEEPEST]
+    columns, rows = seen[there, :2].astype(np.intp).T
+    if room.held is not None:
+        there = there[percept.id_layers[0][rows, columns] != room.held]
     hit = room.hit(_cast(percept, seen[there, :2], body))
     # Where boxes are in each other, the hit may be on the other thing.
     clear = hit[np.arange(len(there)), there] & (hit.sum(axis=1) == 1)
