@@ -42,7 +42,7 @@ EVERY_SWITCH: dict[str, tuple[Any, ...]] = {
     "state": tuple(StateText),
     "terse": (True, False),
     "fresh_view": (True, False),
-    "pictures": (0, 1, 2, "none"),
+    "pictures": (0, 1, 2, "new", "none"),
     "pictures_in_results": (True, False),
     "closeups": (True, False),
     "note_argument": (True, False),
@@ -81,15 +81,16 @@ def test_a_switch_that_confidence_rests_on_takes_it_along() -> None:
 @pytest.mark.parametrize(
     ("name", "switches", "told"),
     [
-        ("slim", {}, "paper, paper-exact, lean"),
+        ("slim", {}, "paper, paper-exact, lean, single"),
         ("lean", {"plans": 3}, "Switches: state, terse"),
         ("lean", {"plan": "many"}, "a number"),
         ("lean", {"plan": 0}, "at least 1"),
         ("lean", {"closeups": "maybe"}, "on or off"),
         ("paper", {"state": "middle"}, "first, last, changes, none"),
-        ("paper", {"pictures": "some"}, "a number or none"),
-        ("paper", {"pictures": -1}, "at least 0, or none"),
+        ("paper", {"pictures": "some"}, "a number, new or none"),
+        ("paper", {"pictures": -1}, "at least 0, new or none"),
         ("paper", {"pictures": "none", "state": "none"}, "would see nothing"),
+        ("paper", {"pictures": "new", "state": "none"}, "set pictures=1"),
         ("lean", {"pictures": "none", "closeups": "on"}, "closeups are pictures"),
         ("paper", {"min_confidence": 0.5}, "needs note_argument"),
     ],
@@ -105,6 +106,8 @@ def test_every_switch_is_covered_here() -> None:
 
 def is_possible(switches: dict[str, Any]) -> bool:
     """Whether something is shown, and close-ups only where there are pictures."""
+    if switches["pictures"] == "new":
+        return switches["state"] is not StateText.NONE
     if switches["pictures"] != "none":
         return True
     return switches["state"] is not StateText.NONE and not switches["closeups"]

@@ -1,8 +1,9 @@
 """Profiles: how the agent is spoken to and what it may do in a turn, as independent switches.
 
-`paper` is the paper's protocol to the letter (Sec. 3.1). `lean` is ours: the same body and the same
-scores for far fewer tokens. Every switch of `lean` can be turned on or off by itself, on top of
-either, so that each can be ablated. Results of different profiles are always reported apart.
+`paper` is the paper's protocol to the letter (Sec. 3.1). `lean` and `single` are ours: the same
+body for far fewer tokens, with models that plan several calls in one turn and with those that make
+one. Every switch can be set by itself, on top of any profile, so that each can be ablated. Results
+of different profiles are always reported apart.
 """
 
 from __future__ import annotations
@@ -33,6 +34,8 @@ class StateText(StrEnum):
 
 NO_PICTURES: Literal["none"] = "none"
 """The value of `pictures` that leaves all of them out, for models that read text alone."""
+NEW_PICTURES: Literal["new"] = "new"
+"""The value of `pictures` that shows each one until the next action alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +50,10 @@ class Profile:
     reference points on walls and above the hand's reach, tools with names and types alone."""
     fresh_view: bool = False
     """A new view after every turn that changed what is seen; otherwise after Look only."""
-    pictures: int | Literal["none"] = 0
-    """Only the pictures of the last so many views stay in the prompt; 0 keeps all within k,
-    "none" shows none at all."""
+    pictures: int | Literal["none", "new"] = 0
+    """Only the pictures of the last so many views stay in the prompt; 0 keeps all within k, "new"
+    shows a picture until the next action, when the text of its view has to do, and "none" shows
+    none at all."""
     pictures_in_results: bool = False
     """Views come inside the tool's result; otherwise as human messages after it."""
     closeups: bool = False
@@ -72,13 +76,18 @@ class Profile:
         count = 0 if isinstance(self.pictures, str) else self.pictures
         if count < 0 or self.plan < 1 or not 0 <= self.min_confidence <= 1:
             raise ConfigError(
-                "pictures is at least 0, or none; plan is at least 1, and min_confidence from 0 "
-                "to 1."
+                "pictures is at least 0, new or none; plan is at least 1, and min_confidence from "
+                "0 to 1."
             )
         if not self.has_pictures and self.state is StateText.NONE:
             raise ConfigError(
                 "With pictures=none and state=none the model would see nothing: leave one of "
                 "them out."
+            )
+        if self.pictures == NEW_PICTURES and self.state is StateText.NONE:
+            raise ConfigError(
+                "With pictures=new a view is its text after the next action, and state=none leaves "
+                "that out: set pictures=1."
             )
         if not self.has_pictures and self.closeups:
             raise ConfigError("closeups are pictures: with pictures=none, set closeups=off.")
@@ -129,6 +138,17 @@ PROFILES: Mapping[str, Profile] = {
         finish_check=True,
         plan=12,
     ),
+    "single": Profile(
+        "single",
+        state=StateText.CHANGES,
+        terse=True,
+        pictures=NEW_PICTURES,
+        pictures_in_results=True,
+        closeups=True,
+        note_argument=True,
+        min_confidence=0.5,
+        finish_check=True,
+    ),
 }
 SWITCHES = tuple(field.name for field in fields(Profile) if field.name != "name")
 
@@ -137,7 +157,7 @@ def profile(name: str, switches: Mapping[str, Any] | None = None) -> Profile:
     """A profile by its name, with some switches set otherwise.
 
     Args:
-        name: "paper", "paper-exact" or "lean".
+        name: "paper", "paper-exact", "lean" or "single".
         switches: New values by switch; texts are read ("on", "off", numbers, "changes").
 
     Raises:
@@ -160,8 +180,8 @@ def profile(name: str, switches: Mapping[str, Any] | None = None) -> Profile:
 
 def _read(switch: str, value: Any, usual: Any) -> Any:
     text = str(value).strip().lower()
-    if switch == "pictures" and text == NO_PICTURES:
-        return NO_PICTURES
+    if switch == "pictures" and text in (NO_PICTURES, NEW_PICTURES):
+        return text
     try:
         if isinstance(usual, bool):
             return {**dict.fromkeys(_ON, True), **dict.fromkeys(_OFF, False)}[text]
@@ -169,7 +189,7 @@ def _read(switch: str, value: Any, usual: Any) -> Any:
     except (KeyError, ValueError):
         offer = "on or off" if isinstance(usual, bool) else "a number"
         if switch == "pictures":
-            offer = "a number or none"
+            offer = "a number, new or none"
         if isinstance(usual, StateText):
             offer = ", ".join(StateText)
         raise ConfigError(f"Switch {switch}: {value!r} is not understood; use {offer}.") from None

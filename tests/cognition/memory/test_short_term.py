@@ -167,6 +167,21 @@ def test_only_the_last_pictures_are_kept(kept: int, expected: list[str], inside:
     assert left_out == 3 - len(expected)
 
 
+@pytest.mark.parametrize("inside", [True, False])
+def test_a_new_picture_is_shown_until_the_next_action(inside: bool) -> None:
+    profile = Profile(pictures="new", state=StateText.CHANGES, pictures_in_results=inside)
+    memory, prompt = filled(50, [], profile)
+    assert pictures(prompt) == ["frame"]
+    memory.remark("go on")
+    assert pictures(memory.messages()) == ["frame"]
+    memory, prompt = filled(50, [(1, False)], profile)
+    assert pictures(prompt) == []
+    assert str(prompt).count("# The view now") == 1
+    memory, prompt = filled(50, [(1, False), (1, True)], profile)
+    assert pictures(prompt) == ["frame 1"]
+    assert str(prompt).count("# The view now") == 1
+
+
 def test_pictures_stand_where_the_profile_wants_them() -> None:
     _, paper = filled(50, [(1, True)])
     assert [type(m) for m in paper[-2:]] == [ToolMessage, HumanMessage]

@@ -15,7 +15,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from adamo_vh.cognition.memory.protocol import Result
-from adamo_vh.cognition.profile import PAPER, Profile, StateText
+from adamo_vh.cognition.profile import (
+    NEW_PICTURES,
+    NO_PICTURES,
+    PAPER,
+    Profile,
+    StateText,
+)
 from adamo_vh.cognition.prompts import render
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.messages import (
@@ -140,12 +146,18 @@ class _Writer:
         self._profile = profile
         self._wording = wording
         self._told = Told(wording)
-        # Without pictures, what is in view is text and stays where it was said.
-        kept = 0 if isinstance(profile.pictures, str) else profile.pictures
         # By identity: two views may look the same and still be two. The last 0 are all of them.
         views = [id(view) for view in _views(entries)]
         shown = [id(frame) for frame in _closeups(entries)]
-        self._in_sight = {*views[-kept:], *shown[-kept:]}
+        if profile.pictures == NEW_PICTURES:
+            new = _since_last_action(entries)
+            self._in_sight = {id(thing) for thing in (*_views(new), *_closeups(new))}
+            self._told_now = set(views[-1:])
+        else:
+            # Without pictures, what is in view is text and stays where it was said.
+            kept = 0 if profile.pictures == NO_PICTURES else profile.pictures
+            self._in_sight = {*views[-kept:], *shown[-kept:]}
+            self._told_now = self._in_sight
 
     def write(self, entry: Instruction | Exchange) -> Iterator[Message]:
         """The messages of an entry."""
@@ -200,9 +212,19 @@ class _Writer:
         if self._profile.state is not StateText.CHANGES:
             return ""
         parts = [self._told.changes(view, agent)]
-        if view is not None and id(view) in self._in_sight:
+        if view is not None and id(view) in self._told_now:
             parts.append(view_now(view, self._wording))
         return "\n\n".join(part for part in parts if part)
+
+
+def _since_last_action(
+    entries: Sequence[Instruction | Exchange],
+) -> Sequence[Instruction | Exchange]:
+    """The last step in which anything was done, and what came after it."""
+    for number, entry in reversed(list(enumerate(entries))):
+        if isinstance(entry, Exchange) and any(result.outcome for result in entry.results):
+            return entries[number:]
+    return entries
 
 
 def _views(entries: Sequence[Instruction | Exchange]) -> Iterator[Observation]:
