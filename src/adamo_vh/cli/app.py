@@ -35,7 +35,9 @@ Model = Annotated[str, typer.Option(help=HELP)]
 ToolCalls = Annotated[
     str, typer.Option(help="How a remote model gives its calls: auto, native, schema or react.")
 ]
-Profile = Annotated[str, typer.Option(help="How it is spoken to: paper, paper-exact, lean or single.")]
+Profile = Annotated[
+    str, typer.Option(help="How it is spoken to: paper, paper-exact, lean or single.")
+]
 Switch = Annotated[
     list[str] | None,
     typer.Option(help="One switch of the profile, e.g. plan=1; may be repeated."),
