@@ -54,8 +54,27 @@ def near_spots(
     facing = np.abs(directions @ _unit(_plan(state.body.position) - center))
     inward = directions @ _unit(np.mean(others, axis=0) - center)
     risk = np.round(4 * (facing - _INWARD_WEIGHT * inward))
-    order = np.lexsort((distances, risk, -np.minimum(apart, FREE_M)))
+    carried = _carried(points, state, item, anchor.support)
+    order = np.lexsort((distances, risk, -np.minimum(apart, FREE_M), ~carried))
     return [_point(points[i], surface_z) for i in order if apart[i] > 0]
+
+
+def _carried(
+    points: Array, state: WorldState, item: ObjectState, support: str | None
+) -> NDArray[np.bool_]:
+    """Which points (N, 2) have all of the item on a surface; (N,) bool.
+
+    All have, if the state does not tell the surface.
+    """
+    surfaces = (s for piece in state.furniture for s in piece.surfaces if s.support == support)
+    if (surface := next(surfaces, None)) is None:
+        return np.ones(len(points), np.bool_)
+    corners = item.box.corners()[:, :2] - _plan(item.box.center)
+    cos, sin = math.cos(surface.yaw_rad), math.sin(surface.yaw_rad)
+    local = points[:, None, :] + corners - _plan(surface.center)
+    local = local @ np.array([[cos, -sin], [sin, cos]])
+    halves = np.array([surface.half_x, surface.half_y])
+    return np.asarray((np.abs(local) <= halves).all(axis=(1, 2)))
 
 
 def floor_spots(
