@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 from adamo_vh.action import Drop, Pick
-from adamo_vh.action_server import LocalActionServer, frame_check
+from adamo_vh.action_server import LocalActionServer
 from adamo_vh.action_server.frame_check import frame_fault
 from adamo_vh.engine import ObjectMoved
 from adamo_vh.geometry import Vec3
+from adamo_vh.observation import NOTHING
 from adamo_vh.runtime.builtin import BuiltinEngine
 
 SMALL = (640, 360)
@@ -51,6 +52,6 @@ def test_few_things_that_lack_their_pixels_are_enough() -> None:
     engine = BuiltinEngine("s1")
     view = engine.capture(*SMALL)
     for layer in view.id_layers:
-        layer[:] = frame_check.NOTHING
+        layer[:] = NOTHING
     fault = frame_fault(view, engine.state(), engine.body)
     assert "lack an object that is there" in fault
