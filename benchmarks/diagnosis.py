@@ -1,15 +1,18 @@
 """How often the diagnosis is right: players that fail in one known way each, and hand labels.
 
     python benchmarks/diagnosis.py [--scene s1] [--labeling sem] [--way loop] [--tasks 2]
-        [--seed 0] [--out DIR] [--misses] [--json]
+        [--seed 0] [--labelled] [--out DIR] [--misses] [--json]
 
 Scene, labeling and way may be repeated. Each way is played in so many tasks that it fits, of each
-scene and labeling. What the player was built to do wrong is what the diagnosis should say.
+scene and labeling. What the player was built to do wrong is what the diagnosis should say. With
+`--labelled`, natural failures are played instead, and what is expected was told by a person who
+read them before any rule did: `labelled.tsv`.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import random
 import tempfile
@@ -26,9 +29,13 @@ import adamo_vh
 from adamo_vh.analysis.diagnosis import Code, FailureClass
 from adamo_vh.benchmark.tasks import TASKS, Task
 from adamo_vh.engine import World
+from adamo_vh.episode.result import EpisodeResult
 from adamo_vh.perception import Labeling
 from adamo_vh.record.termination import Limits
 from adamo_vh.session.explaining import explain_run
+
+LABELLED = Path(__file__).with_name("labelled.tsv")
+"""Natural failures: scene, labeling, task and player, the code, and a sentence of reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +64,7 @@ def main() -> None:
     parser.add_argument("--way", action="append")
     parser.add_argument("--tasks", type=int, default=2, help="tasks for each way")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--labelled", action="store_true", help="natural failures instead")
     parser.add_argument("--out", type=Path, help="keep the run folders here")
     parser.add_argument("--misses", action="store_true", help="print what was told wrongly")
     parser.add_argument("--json", action="store_true")
@@ -66,7 +74,8 @@ def main() -> None:
         out = arguments.out or Path(folder)
         for scene in arguments.scene or ["s1", "s2"]:
             engine = adamo_vh.create_engine(scene)
-            for trial in _played(engine, out, arguments):
+            played = _labelled if arguments.labelled else _played
+            for trial in played(engine, out, arguments):
                 trials.append(trial)
                 is_miss = trial.found is not trial.expected
                 if is_miss and arguments.misses:
@@ -108,12 +117,46 @@ def _trial(
         resolution=(640, 360),
         limits=Limits(max_steps=way.max_steps),
     )
+    return _explained(out / name, engine, result, way.code)
+
+
+def _explained(folder: Path, engine: World, result: EpisodeResult, expected: Code) -> Trial | None:
     if result.strict == 1 or result.completion is None:
         return None
     began = time.perf_counter()
-    found = explain_run(out / name, engine)
+    found = explain_run(folder, engine)
     seconds = time.perf_counter() - began
-    return Trial(name, way.code, found.code, seconds, result.steps, found.summary)
+    return Trial(folder.name, expected, found.code, seconds, result.steps, found.summary)
+
+
+def _labelled(engine: World, out: Path, arguments: argparse.Namespace) -> Iterator[Trial]:
+    """Play the natural failures of a scene again: all their players are deterministic."""
+    with LABELLED.open(encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file, delimiter="\t") if row["code"]]
+    for row in rows:
+        if row["scene"] != engine.scene.name or (
+            arguments.labeling and row["labeling"] not in arguments.labeling
+        ):
+            continue
+        kind, _, number = row["player"].partition(":")
+        settings: dict[str, Any] = {"resolution": "640x360"}
+        if kind == "blind":
+            settings["switches"] = {"pictures": "none"}
+        elif kind == "dim":
+            settings |= {"resolution": "96x64", "k": 3}
+        elif kind == "short":
+            settings["limits"] = Limits(max_steps=int(number))
+        folder = out / "-".join((row["scene"], row["labeling"], row["task"], kind, number or "0"))
+        result = adamo_vh.run_episode(
+            task=row["task"],
+            labeling=row["labeling"],
+            model=row["player"] if kind == "random" else "baseline",
+            engine=engine,
+            out=folder,
+            **settings,
+        )
+        if (trial := _explained(folder, engine, result, Code(row["code"]))) is not None:
+            yield trial
 
 
 def _figures(trials: Sequence[Trial]) -> dict[str, Any]:

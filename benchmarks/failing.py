@@ -327,7 +327,7 @@ def puts_it_too_far_away(p: Player) -> Iterator[Said]:
         anchor = state.object(goal.anchor)
         others = [o for o in state.objects if o.support == anchor.support]
         ends = [o.box.center for o in others if o.id not in goal.objects]
-        # Along the surface, towards the other things on it; on a bare one, to the floor.
+        # Along the surface, towards the other things on it.
         center = anchor.box.center
         spots = [
             center + (end - center) * (away / end.horizontal_distance(center))
@@ -336,7 +336,10 @@ def puts_it_too_far_away(p: Player) -> Iterator[Said]:
             if end.horizontal_distance(center) > away
         ]
         spots = [Vec3(s.x, s.y, anchor.box.bottom_z).rounded(2) for s in spots]
-        yield p.put(goal.id, p.lots.choice(spots or [p.floor(goal.id)]))
+        if spots:
+            yield p.put(goal.id, p.lots.choice(spots))
+        else:  # Nothing on this surface is far enough.
+            yield from p.pursue([goal])
     yield p.done()
 
 

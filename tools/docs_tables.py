@@ -43,6 +43,18 @@ def model_uris() -> str:
     return markdown_table()
 
 
+def failures() -> str:
+    """Every way to fail that a diagnosis tells, by class."""
+    from adamo_vh.analysis.diagnosis.finding import CODES
+
+    rows = (
+        (kind.value, f"`{code}`", meaning)
+        for kind, codes in CODES.items()
+        for code, meaning in codes.items()
+    )
+    return _table(("class", "code", "meaning"), rows)
+
+
 def commands() -> str:
     """Every command with its arguments and options."""
     import typer
@@ -76,5 +88,6 @@ def _help(parameter: Any) -> str:
 TABLES: dict[str, Callable[[], str]] = {
     "commands": commands,
     "exit codes": exit_codes,
+    "failures": failures,
     "model uris": model_uris,
 }
