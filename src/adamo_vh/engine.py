@@ -21,6 +21,15 @@ FLOOR = "floor"
 """Name of the floor as a support."""
 
 
+MOST_VARIATIONS = 999_999
+"""Largest number of a variation."""
+
+
+def named(scene: str, variation: int) -> str:
+    """A scene with its variation, as people read it: "s1", "s1 variation 7"."""
+    return f"{scene} variation {variation}" if variation else scene
+
+
 def object_support(object_id: int) -> str:
     """Name of an interactable object as a support."""
     return f"object {object_id}"
@@ -61,6 +70,13 @@ class SceneInfo:
     digest: str = ""
     """Digest over all that decides how it starts and looks: furniture, objects, lights, figure.
     Empty if the engine does not say; two scenes with the same digest give the same episode."""
+    variation: int = 0
+    """Which variation of the scene it is; 0 is the scene as it stands."""
+
+    @property
+    def full_name(self) -> str:
+        """Its name, with the variation that it is."""
+        return named(self.name, self.variation)
 
     def nearest(self, point: Vec3) -> Vec3:
         """The point of the room that is nearest to a point: itself, if it is inside."""
@@ -141,7 +157,7 @@ class WorldState:
 
     def hash(self) -> str:
         """Hex digest over all poses, rounded to 0.1 mm and 0.001 rad."""
-        lines = [self.scene.name]
+        lines = [self.scene.full_name]
         for item in self.objects:
             q = item.box.orientation
             sign = -1.0 if (q.w, q.x, q.y, q.z) < (0.0, 0.0, 0.0, 0.0) else 1.0

@@ -89,7 +89,7 @@ def run(
     profile: Profile = "paper",
     switch: Switch = None,
     seed: Annotated[int, typer.Option(help="Seed of the model's draws.")] = 0,
-    variation: Annotated[int, typer.Option(help="Variation of the scene; only 0 so far.")] = 0,
+    variation: Annotated[int, typer.Option(help="Variation of the scene; 0 as it stands.")] = 0,
     tool: Annotated[
         list[str] | None,
         typer.Option(help="One more tool, from another package; may be repeated."),

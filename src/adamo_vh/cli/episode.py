@@ -79,7 +79,7 @@ def filming(path: Path, config: EpisodeConfig, observers: list[Observer]) -> Ite
     from adamo_vh.adapters.video import VideoRecorder
     from adamo_vh.session.filming import FilmSet
 
-    film_set = FilmSet.of(config.scene, config.figure)
+    film_set = FilmSet.of(config.scene, config.figure, config.variation)
     recorder = VideoRecorder(path, film_set)
     observers.append(recorder)
     try:
@@ -192,7 +192,7 @@ def result_json(result: EpisodeResult) -> dict[str, Any]:
         "conditions": [],
         "violations": [],
     }
-    counted = {"tokens": result.tokens, "world": world}
+    counted = {"variation": result.variation, "tokens": result.tokens, "world": world}
     return {**{key: data[key] for key in keys.split()}, **score, **counted}
 
 

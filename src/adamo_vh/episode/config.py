@@ -13,6 +13,7 @@ from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.profile import PAPER, Profile
 from adamo_vh.cognition.profile import profile as find_profile
+from adamo_vh.engine import MOST_VARIATIONS
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import Sampling
 from adamo_vh.perception import Labeling, Tagger, TextForm
@@ -103,9 +104,10 @@ class EpisodeConfig:
             raise ConfigError(f"k is {self.k}: the memory keeps at least 1 step.")
         if _whole("seed", self.seed) < 0:
             raise ConfigError(f"seed is {self.seed}: use a whole number from 0.")
-        if _whole("variation", self.variation) != 0:
+        if not 0 <= _whole("variation", self.variation) <= MOST_VARIATIONS:
             raise ConfigError(
-                f"variation is {self.variation}: there is only 0, the scene as it is."
+                f"variation is {self.variation}: use 0, the scene as it is, up to "
+                f"{MOST_VARIATIONS}."
             )
         sampling = self.sampling
         for name, most in (("temperature", 2.0), ("top_p", 1.0)):

@@ -113,6 +113,11 @@ class EpisodeResult:
     """What people should know of the replies; see `Reply.warning`."""
 
     @property
+    def variation(self) -> int:
+        """Which variation of the scene it was in; 0 is the scene as it stands."""
+        return self.final.scene.variation
+
+    @property
     def completion(self) -> float | None:
         """Fraction of satisfied conditions; None if there is no score."""
         return None if self.score is None else self.score.completion

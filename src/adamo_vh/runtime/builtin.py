@@ -39,12 +39,15 @@ class BuiltinEngine:
     Every call may come from any thread; calls from several threads wait for each other.
     """
 
-    def __init__(self, scene: str | Scene = "s1", figure: str = VARIANTS[0]) -> None:
+    def __init__(
+        self, scene: str | Scene = "s1", figure: str = VARIANTS[0], origin: str = ""
+    ) -> None:
         """Load a scene and settle it.
 
         Args:
             scene: Name of a built-in scene, path of a scene file, or a loaded scene.
             figure: Who the virtual human is, one of `adamo_vh.runtime.human.looks.VARIANTS`.
+            origin: Name or path of the scene that a loaded one was made of.
 
         Raises:
             SceneError: The scene is unknown or wrong, or the physics cannot take it.
@@ -53,7 +56,8 @@ class BuiltinEngine:
         self._scene = load_scene(scene) if isinstance(scene, str) else scene
         check_process()
         load_mujoco()
-        self._info = _described(self._scene, scene, figure)
+        given = origin or (scene if isinstance(scene, str) else "")
+        self._info = _described(self._scene, given, figure)
         self._world: CompiledWorld = settled_world(self._scene, load_figure(figure))
         self.turns = Turns()
         self.stage = Stage(self._world)
@@ -154,7 +158,7 @@ class BuiltinEngine:
         absent = tuple(sorted(self._world.absent))
         said = tuple(self.body.said)
         lights = self._happenings.lights
-        return Snapshot(self._info.name, qpos, self.body.stance, said, absent, lights).pack()
+        return Snapshot(self._world.name, qpos, self.body.stance, said, absent, lights).pack()
 
     @in_turn
     def restore(self, snapshot: bytes) -> None:
@@ -183,10 +187,8 @@ class BuiltinEngine:
         self.stage.close()
 
 
-def _described(scene: Scene, given: str | Scene, figure: str) -> SceneInfo:
+def _described(scene: Scene, given: str, figure: str) -> SceneInfo:
     """What the engine says of its scene, with its origin and its digest."""
-    source = "given"
-    if isinstance(given, str):
-        source = "built-in" if given.lower() in scene_names() else given
+    source = "built-in" if given.lower() in scene_names() else given or "given"
     digest = hashlib.sha256(repr((scene, figure)).encode()).hexdigest()
     return replace(scene.info(), source=source, digest=digest)

@@ -50,7 +50,7 @@ class CompiledWorld:
     """A compiled world."""
 
     name: str
-    """Of the scene."""
+    """Of the scene, with its variation."""
     model: mujoco.MjModel
     data: mujoco.MjData
     room: Room
@@ -110,7 +110,7 @@ def build_world(
 
     if assets is None:
         assets = scene_assets(scene)
-    spec = _empty_spec()
+    spec = _empty_spec(scene.ambient)
     shell = load_room(scene)
     walls = spec.worldbody.add_body(name=ROOM)
     add_asset(spec, walls, shell, ROOM)
@@ -133,7 +133,7 @@ def build_world(
         object_of_geom[model.geom_bodyid == world_object.body] = world_object.id
     furniture_of_body = {model.body(p.name).id: p.name for p in scene.furniture}
     return CompiledWorld(
-        scene.name,
+        scene.full_name,
         model,
         data,
         scene.room,
@@ -219,7 +219,7 @@ def object_body(object_id: int) -> str:
     return f"object_{object_id}"
 
 
-def _empty_spec() -> mujoco.MjSpec:
+def _empty_spec(ambient: float) -> mujoco.MjSpec:
     import mujoco
 
     spec = mujoco.MjSpec()
@@ -234,7 +234,7 @@ def _empty_spec() -> mujoco.MjSpec:
     spec.visual.global_.fovy = math.degrees(FOV_Y_RAD)
     spec.visual.global_.offwidth = 1920
     spec.visual.global_.offheight = 1080
-    spec.visual.headlight.ambient = [0.54, 0.535, 0.53]
+    spec.visual.headlight.ambient = [ambient, ambient * 0.535 / 0.54, ambient * 0.53 / 0.54]
     spec.visual.headlight.diffuse = [0.16, 0.16, 0.16]
     spec.visual.headlight.specular = [0.0, 0.0, 0.0]
     return spec

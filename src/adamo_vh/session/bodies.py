@@ -31,7 +31,7 @@ ENGINES, TOOLS = "adamo_vh.engines", "adamo_vh.tools"
 _DEFAULT_SCENE = "s1"
 
 
-def create_engine(scene: str = "s1", figure: str = "mara") -> World:
+def create_engine(scene: str = "s1", figure: str = "mara", variation: int = 0) -> World:
     """The built-in engine with a scene.
 
     Args:
@@ -39,17 +39,23 @@ def create_engine(scene: str = "s1", figure: str = "mara") -> World:
             package offers under the entry point NAME of ``adamo_vh.engines``: a function of REST
             and the figure that gives a `World`.
         figure: Who the virtual human is: mara, jonas, amina or ken.
+        variation: Of the scene's layout; 0 is the scene as it stands. One that is not known yet is
+            looked for first, which takes some ten seconds.
 
     Raises:
-        SceneError: The scene is unknown or wrong.
-        ConfigError: No figure has this name.
+        SceneError: The scene is unknown or wrong, or has no such variation.
+        ConfigError: No figure has this name, or the engine of another package has no variations.
     """
     name, _, rest = scene.partition(":")
     if (made := offered_by_others(ENGINES).get(name)) is not None:
+        if variation:
+            raise ConfigError(
+                f"variation is {variation}: the scenes of {name!r} have none; use 0 there."
+            )
         return cast(World, made.load()(rest, figure))
-    from adamo_vh.runtime.builtin import BuiltinEngine
+    from adamo_vh.session.variations import built_in_engine
 
-    return BuiltinEngine(scene, figure)
+    return built_in_engine(scene, figure, variation)
 
 
 def offered_by_others(group: str) -> dict[str, EntryPoint]:
@@ -78,7 +84,7 @@ def opened(
         acting_body(engine)
         world = engine
     else:
-        scene = config.scene
+        scene, variation = config.scene, config.variation
         if recorded is not None:
             folder, manifest = recorded
             if manifest.engine:
@@ -87,8 +93,9 @@ def opened(
                     f"scene {config.scene!r}); hand it in again: engine=..."
                 )
             if (folder / SCENE).is_file():
-                scene = str(folder / SCENE)
-        world = create_engine(scene, config.figure)
+                # It is the variation itself, whatever is drawn for its number today.
+                scene, variation = str(folder / SCENE), 0
+        world = create_engine(scene, config.figure, variation)
         stack.callback(world.close)
     world.reset(config.seed)
     return world
@@ -103,7 +110,23 @@ def as_said(config: EpisodeConfig, world: World) -> EpisodeConfig:
             f"The engine is of scene {scene.name!r}, and the settings say {config.scene!r}; leave "
             "the scene out."
         )
-    return replace(config, scene=name, figure=acting_body(world).info.figure)
+    variation = 0 if _is_variation(name) else scene.variation
+    if config.variation not in (0, variation):
+        raise ConfigError(
+            f"The engine is of {scene.full_name}, and the settings say variation "
+            f"{config.variation}; leave the variation out."
+        )
+    figure = acting_body(world).info.figure
+    return replace(config, scene=name, variation=variation, figure=figure)
+
+
+def _is_variation(scene: str) -> bool:
+    """Whether a scene file holds a variation: then no number brings it back, only the file."""
+    if not Path(scene).is_file():
+        return False
+    from adamo_vh.runtime.scenes.scene import load_scene
+
+    return load_scene(scene).variation > 0
 
 
 def own_engine(world: World) -> str:
@@ -116,7 +139,13 @@ def own_engine(world: World) -> str:
 def store_sources(folder: Path, config: EpisodeConfig, world: World) -> None:
     """Put the files that an episode rests on into its run folder: an own scene, a script."""
     scene = Path(world.scene.source)
-    if scene.suffix == ".toml" and scene.is_file():
+    if config.variation and not own_engine(world):
+        from adamo_vh.runtime.scenes.writing import scene_toml
+        from adamo_vh.session.variations import variation_of
+
+        varied = variation_of(config.scene, config.variation)
+        write_whole(folder / SCENE, scene_toml(varied).encode())
+    elif scene.suffix == ".toml" and scene.is_file():
         write_whole(folder / SCENE, scene.read_bytes())
     kind, _, path = config.model.partition(":")
     if kind == "scripted" and Path(path).is_file():

@@ -29,16 +29,16 @@ class FilmSet:
         self.engine = engine
 
     @classmethod
-    def of(cls, scene: str, figure: str) -> FilmSet:
-        """The built-in engine with a scene, made to be filmed.
+    def of(cls, scene: str, figure: str, variation: int = 0) -> FilmSet:
+        """The built-in engine with a scene or one of its variations, made to be filmed.
 
         Raises:
             SceneError: The scene is unknown or wrong.
             ConfigError: No figure has this name.
         """
-        from adamo_vh.runtime.builtin import BuiltinEngine
+        from adamo_vh.session.variations import built_in_engine
 
-        return cls(BuiltinEngine(scene, figure))
+        return cls(built_in_engine(scene, figure, variation))
 
     @property
     def scene(self) -> SceneInfo:

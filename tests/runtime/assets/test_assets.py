@@ -47,6 +47,17 @@ PROMISES = {
     "cup": Promise("Cup", (0.149, 0.105, 0.131)),
     "indoor_plant": Promise("IndoorPlant", (0.250, 0.250, 0.340)),
     "plate": Promise("Plate", (0.250, 0.250, 0.030), True),
+    # Further things that a variation may put among them; none has white parts or a label.
+    "banana": Promise("Banana", (0.185, 0.078, 0.036)),
+    "apple": Promise("Apple", (0.078, 0.078, 0.088)),
+    "pumpkin": Promise("Pumpkin", (0.170, 0.170, 0.150)),
+    "rubber_duck": Promise("RubberDuck", (0.090, 0.110, 0.105)),
+    "toy_car": Promise("ToyCar", (0.066, 0.130, 0.056)),
+    "teapot": Promise("Teapot", (0.230, 0.140, 0.150)),
+    "wooden_spoon": Promise("WoodenSpoon", (0.280, 0.058, 0.020)),
+    "scissors": Promise("Scissors", (0.190, 0.086, 0.012)),
+    "remote_control": Promise("RemoteControl", (0.046, 0.170, 0.020)),
+    "hammer": Promise("Hammer", (0.290, 0.120, 0.034)),
 }
 EVERYTHING = [*catalog.OBJECTS, *catalog.FURNITURE]
 MILLIMETRE = 1e-3

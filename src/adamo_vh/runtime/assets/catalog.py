@@ -40,6 +40,15 @@ OBJECTS: Mapping[str, Builder] = _builders(
             "wine_bottle",
         ),
         "objects.tableware": ("glass", "cup", "plate", "indoor_plant"),
+        "objects.produce": ("banana", "apple", "pumpkin"),
+        "objects.play": ("rubber_duck", "toy_car"),
+        "objects.household": (
+            "teapot",
+            "wooden_spoon",
+            "scissors",
+            "remote_control",
+            "hammer",
+        ),
     }
 )
 """Interactable objects."""

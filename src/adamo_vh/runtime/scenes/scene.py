@@ -15,7 +15,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
-from adamo_vh.engine import Area, SceneInfo
+from adamo_vh.engine import MOST_VARIATIONS, Area, SceneInfo, named
 from adamo_vh.errors import FileError, SceneError
 from adamo_vh.files import parse_toml, read_text
 from adamo_vh.runtime.scenes.faults import field_faults
@@ -119,14 +119,22 @@ class Scene:
     furniture: Annotated[tuple[Furniture, ...], Field(max_length=100)]
     objects: Annotated[tuple[PlacedObject, ...], Field(min_length=1, max_length=200)]
     areas: Annotated[tuple[FloorArea, ...], Field(max_length=50)] = field(default=())
+    ambient: Unit = 0.54
+    """How bright the light is that comes from everywhere."""
+    variation: Annotated[int, Field(strict=True, ge=0, le=MOST_VARIATIONS)] = 0
+    """Which variation of a scene this is; 0 for a scene of its own."""
+
+    @property
+    def full_name(self) -> str:
+        """Its name, with the variation that it is."""
+        return named(self.name, self.variation)
 
     def info(self) -> SceneInfo:
         """The public facts about the scene."""
         room = self.room
         areas = tuple(Area(a.name, a.kind, *a.min, *a.max) for a in self.areas)
-        return SceneInfo(
-            self.name, room.x_min, room.y_min, room.x_max, room.y_max, room.height_m, areas
-        )
+        extent = (room.x_min, room.y_min, room.x_max, room.y_max, room.height_m)
+        return SceneInfo(self.name, *extent, areas, variation=self.variation)
 
 
 _BUILT_IN = {"s1": "s1_tabletop.toml", "s2": "s2_living_room.toml"}
