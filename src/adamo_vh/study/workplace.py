@@ -33,8 +33,7 @@ class _Shared:
         """A world in it."""
         with self.making:
             if self.lender is None:
-                scene, figure, _ = self.place
-                self.lender = Lender(create_engine(scene, figure))
+                self.lender = Lender(create_engine(*self.place))
         return self.lender.lend()
 
 

@@ -17,18 +17,13 @@ from typing import TypeVar
 
 import numpy as np
 
-from adamo_vh.engine import FLOOR
+from adamo_vh.engine import FLOOR, WorldSurface
 from adamo_vh.errors import SceneError
 from adamo_vh.geometry import Array, Solid, gaps
 from adamo_vh.runtime.assets.asset import Asset, Collider
 from adamo_vh.runtime.embodiment import EYE_HEIGHT_M
 from adamo_vh.runtime.scenes.scene import Furniture, Light, PlacedObject, Scene
-from adamo_vh.runtime.world import (
-    WorldSurface,
-    furniture_solids,
-    furniture_surfaces,
-    scene_assets,
-)
+from adamo_vh.runtime.world import furniture_solids, furniture_surfaces, scene_assets
 
 _T = TypeVar("_T")
 
@@ -61,6 +56,8 @@ _HEADROOM_M = 0.06
 """Free height above an object, so that it can be seen and taken."""
 _TALL_M = 0.04
 """Least height of what lies higher than the eyes: what is flat would never be seen there."""
+_LEAST_HEIGHT_M = 0.01
+"""Flat things may not lie under others either."""
 _SUPPORTS, _POINTS = 24, 24
 """How often another piece of furniture is drawn for an object, and how many places on each."""
 
@@ -179,6 +176,7 @@ class _Placing:
     def place(self, item: PlacedObject) -> PlacedObject:
         """The object at a free place, turned; it is in the way of those that follow."""
         length, width, height = self._assets[item.asset].size
+        height = max(height, _LEAST_HEIGHT_M)
         for _ in range(_SUPPORTS):
             surface, carries = self._surfaces[self._draws.heavy(self._weights)]
             if surface.center.z > EYE_HEIGHT_M and height < _TALL_M:
