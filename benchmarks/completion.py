@@ -1,10 +1,11 @@
 """Completion of a model on every task: one episode for each task, scene, labeling and profile.
 
     python benchmarks/completion.py [--model baseline] [--scene s1] [--labeling sem]
-        [--profile paper] [--task T4] [--budget-usd 5] [--seed 0] [--resolution 1920x1080] [--json]
+        [--profile paper] [--task T4] [--budget-usd 5] [--seed 0] [--resolution 1920x1080]
+        [--variation 0] [--json]
 
-Scene, labeling, profile and task may be repeated. Tokens are the provider's, or estimated for
-players that have none.
+Scene, labeling, profile, task and variation may be repeated. Tokens are the provider's, or
+estimated for players that have none.
 """
 
 from __future__ import annotations
@@ -34,13 +35,15 @@ def main() -> None:
     parser.add_argument("--task", action="append")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--resolution", type=read_resolution, default=(1920, 1080))
+    parser.add_argument("--variation", type=int, action="append")
     parser.add_argument("--budget-usd", type=float, help="cap on the whole run")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     ledger, caps = Ledger(), Budget(usd=arguments.budget_usd)
     rows: list[dict[str, Any]] = []
-    for scene in arguments.scene or ["s1"]:
-        engine = adamo_vh.create_engine(scene)
+    places = itertools.product(arguments.scene or ["s1"], arguments.variation or [0])
+    for scene, variation in places:
+        engine = adamo_vh.create_engine(scene, variation=variation)
         cells = itertools.product(
             arguments.profile or ["paper"],
             arguments.labeling or ["sem", "opaq"],
@@ -64,6 +67,7 @@ def main() -> None:
             player.info.close()
             row = {
                 "scene": scene,
+                "variation": variation,
                 "profile": profile,
                 "labeling": labeling,
                 "task": task,
@@ -80,7 +84,7 @@ def main() -> None:
             if not arguments.json:
                 scored = "    " if result.completion is None else f"{result.completion:.2f}"
                 print(
-                    f"{scene} {profile:<5} {labeling:<4} {task:<3} {scored} "
+                    f"{scene} {variation} {profile:<5} {labeling:<4} {task:<3} {scored} "
                     f"strict {result.strict or 0:.0f} steps {result.steps:2d} calls "
                     f"{result.model_calls:2d} tokens {result.tokens:6d} "
                     f"{row['model_ms_per_call']:6.1f} ms/call  {result.answer[:80]}",

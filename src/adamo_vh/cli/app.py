@@ -250,6 +250,21 @@ def scenes_show(
     show(file, out)
 
 
+@scenes_app.command("vary")
+def scenes_vary(
+    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
+    variation: Annotated[
+        int, typer.Option(help="Which one: 1 to 999 to tune on, from 1000 to test on.")
+    ],
+    out: Annotated[Path | None, typer.Option(help="Scene file to write: FILE.toml.")] = None,
+    json: Json = False,
+) -> None:
+    """Show a variation of a scene, in words and pictures, and write it as a scene file."""
+    from adamo_vh.cli.scenes import vary
+
+    vary(file, variation, out, as_json=json)
+
+
 @models_app.command("check")
 def models_check(
     uri: Annotated[str, typer.Argument(help="The model, as for --model of run.")],

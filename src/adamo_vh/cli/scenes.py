@@ -1,4 +1,4 @@
-"""`adamo-vh scenes`, `adamo-vh scenes check` and `adamo-vh scenes show`."""
+"""`adamo-vh scenes`, and `check`, `show` and `vary` of it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,17 @@ from rich.table import Table
 
 from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.terminal import complain, put_json, say
-from adamo_vh.errors import FileError
+from adamo_vh.engine import MOST_VARIATIONS
+from adamo_vh.errors import ConfigError, FileError
 from adamo_vh.files import write_whole
 from adamo_vh.session.builtin import (
     SceneReport,
     inspect_scene_file,
     known_scenes,
+    light_of,
+    read_scene,
     scene_pictures,
+    write_scene,
 )
 
 
@@ -75,7 +79,30 @@ def check(file: str, out: Path | None, *, as_json: bool) -> None:
 
 def show(file: str, out: Path | None) -> None:
     """Draw a scene from above, from the start and from each corner."""
-    for path in _written(scene_pictures(file), out):
+    for path in _written(scene_pictures(read_scene(file)), out):
+        say(path)
+
+
+def vary(file: str, variation: int, out: Path | None, *, as_json: bool) -> None:
+    """Say what is where in a variation, draw it, and write it as a scene file if asked to."""
+    if out is not None and out.suffix != ".toml":
+        raise ConfigError(f"--out {out}: a scene file ends with .toml; name it so.")
+    if not 0 <= variation <= MOST_VARIATIONS:
+        raise ConfigError(f"--variation {variation}: use 0 to {MOST_VARIATIONS}.")
+    scene = read_scene(file, variation)
+    added = {item.id for item in scene.objects} - {item.id for item in read_scene(file).objects}
+    written = [] if out is None else [write_scene(scene, out)]
+    written += _written(scene_pictures(scene), None)
+    if as_json:
+        data = {"scene": scene.name, "variation": scene.variation, "light": light_of(scene)}
+        objects = [{**asdict(item), "added": item.id in added} for item in scene.objects]
+        put_json({**data, "objects": objects, "written": [str(path) for path in written]})
+        return
+    say(f"{scene.full_name}, light {light_of(scene)}")
+    for item in scene.objects:
+        more = ", added" if item.id in added else ""
+        say(f"{item.id:4d} {item.asset} on {item.on}, turned {item.yaw_deg:g} degrees{more}")
+    for path in written:
         say(path)
 
 
@@ -83,7 +110,7 @@ def _written(report: SceneReport, out: Path | None) -> list[Path]:
     """Write the pictures of a scene into a folder."""
     from PIL import Image
 
-    folder = out or Path(f"scene-{report.name}")
+    folder = out or Path(f"scene-{report.name.replace(' ', '-')}")
     written = []
     for name, rgb in report.pictures.items():
         picture = io.BytesIO()

@@ -51,7 +51,7 @@ def list_tasks(*, as_json: bool) -> None:
     Console().print(table)
 
 
-def verify(scene: str | None, *, as_json: bool) -> None:
+def verify(scene: str | None, variation: int, *, as_json: bool) -> None:
     """Play oracle and idle for every task, scene and labeling; exit 1 if a task is unsound."""
     from adamo_vh.benchmark.verify import verify_tasks
     from adamo_vh.session.bodies import create_engine
@@ -59,7 +59,7 @@ def verify(scene: str | None, *, as_json: bool) -> None:
 
     rows = []
     for name in [scene] if scene else scene_names():
-        engine = create_engine(name)
+        engine = create_engine(name, variation=variation)
         for labeling in Labeling:
             for row in verify_tasks(engine, labeling):
                 rows.append(row)

@@ -23,12 +23,13 @@ def tasks(context: typer.Context, json: Json = False) -> None:
 @tasks_app.command("verify")
 def verify(
     scene: Annotated[str | None, typer.Option(help="One scene; all by default.")] = None,
+    variation: Annotated[int, typer.Option(help="Variation of the scene; 0 as it stands.")] = 0,
     json: Json = False,
 ) -> None:
     """Prove that the oracle solves every task and that doing nothing solves none."""
     from adamo_vh.cli.tasks import verify
 
-    verify(scene, as_json=json)
+    verify(scene, variation, as_json=json)
 
 
 @tasks_app.command("check")

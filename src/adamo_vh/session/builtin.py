@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from adamo_vh.action_server.engine_check import engine_faults
 from adamo_vh.errors import RenderingError, SceneError
+from adamo_vh.files import write_whole
 from adamo_vh.plugins import ENGINES, plugin_names
 
 if TYPE_CHECKING:
@@ -105,21 +106,52 @@ def inspect_scene_file(file: str) -> SceneReport:
         engine.close()
 
 
-def scene_pictures(file: str) -> SceneReport:
+def scene_pictures(scene: Scene) -> SceneReport:
     """Draw a scene from above, from each corner and from the start; nothing is looked over.
 
     Raises:
-        SceneError: The scene is unknown or wrong.
+        SceneError: The physics cannot take it.
     """
     from adamo_vh.runtime.builtin import BuiltinEngine
-    from adamo_vh.runtime.scenes import load_scene
 
-    scene = load_scene(file)
     engine = BuiltinEngine(scene)
     try:
-        return SceneReport(scene.name, (), _pictures(scene, engine, None))
+        return SceneReport(scene.full_name, (), _pictures(scene, engine, None))
     finally:
         engine.close()
+
+
+def read_scene(file: str, variation: int = 0) -> Scene:
+    """A scene, or one of its variations, as data.
+
+    Args:
+        file: Scene file or built-in name.
+        variation: 0 is the scene as it stands.
+
+    Raises:
+        SceneError: The scene is unknown or wrong, or has no such variation.
+    """
+    from adamo_vh.session.variations import variation_of
+
+    return variation_of(file, variation)
+
+
+def light_of(scene: Scene) -> str:
+    """How bright a variation is, in a word: normal, low or high."""
+    from adamo_vh.runtime.scenes.variation import light_preset
+
+    return light_preset(scene.variation).name
+
+
+def write_scene(scene: Scene, file: Path) -> Path:
+    """Write a scene file that holds a scene.
+
+    Raises:
+        FileError: It cannot be written.
+    """
+    from adamo_vh.runtime.scenes.writing import scene_toml
+
+    return write_whole(file, scene_toml(scene).encode())
 
 
 def _pictures(

@@ -9,7 +9,7 @@ import sys
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from adamo_vh.errors import SceneError
@@ -80,6 +80,7 @@ def test_draws_follow_their_weights() -> None:
 
 
 @BOTH
+@settings(max_examples=40)
 @given(number=st.integers(1, 999_999), attempt=st.integers(0, 50))
 def test_every_drawing_is_a_sound_arrangement(scene: Scene, number: int, attempt: int) -> None:
     drawn = varied(scene, number, attempt)

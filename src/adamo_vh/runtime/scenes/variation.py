@@ -11,6 +11,7 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import accumulate
 from types import MappingProxyType
 from typing import TypeVar
@@ -21,9 +22,10 @@ from adamo_vh.engine import FLOOR, WorldSurface
 from adamo_vh.errors import SceneError
 from adamo_vh.geometry import Array, Solid, gaps
 from adamo_vh.runtime.assets.asset import Asset, Collider
+from adamo_vh.runtime.assets.bake import load_asset
 from adamo_vh.runtime.embodiment import EYE_HEIGHT_M
-from adamo_vh.runtime.scenes.scene import Furniture, Light, PlacedObject, Scene
-from adamo_vh.runtime.world import furniture_solids, furniture_surfaces, scene_assets
+from adamo_vh.runtime.scenes.scene import Light, PlacedObject, Scene
+from adamo_vh.runtime.world import furniture_solids, furniture_surfaces
 
 _T = TypeVar("_T")
 
@@ -111,10 +113,9 @@ def varied(scene: Scene, number: int, attempt: int = 0) -> Scene:
     chosen = draws.some(further, _FEWEST + draws.below(_MOST - _FEWEST + 1))
     added = tuple(PlacedObject(i, name, FLOOR, (0.0, 0.0)) for i, name in sorted(chosen))
     full = replace(scene, objects=(*scene.objects, *added))
-    assets = scene_assets(full)
-    placing = _Placing(scene, assets, draws)
+    placing = _Placing(scene, draws)
     # The large ones first: they find a place only while there is room.
-    order = sorted(full.objects, key=lambda item: (-_footprint(assets[item.asset]), item.id))
+    order = sorted(full.objects, key=lambda item: (-_footprint(_shape(item.asset)), item.id))
     placed = {item.id: placing.place(item) for item in order}
     preset = light_preset(number)
     return replace(
@@ -155,16 +156,16 @@ class Draws:
 class _Placing:
     """Finds places for the objects of a scene, one after another."""
 
-    def __init__(self, scene: Scene, assets: Mapping[str, Asset], draws: Draws) -> None:
-        self._assets, self._draws = assets, draws
+    def __init__(self, scene: Scene, draws: Draws) -> None:
+        self._draws = draws
         self._solids = [
-            solid for piece in scene.furniture for solid in _occupied(piece, assets[piece.asset])
+            solid for p in scene.furniture for solid in furniture_solids(p, _shape(p.asset))
         ]
         carries = {item.on for item in scene.objects}
         self._surfaces = [
             (surface, surface.support in carries)
             for piece in scene.furniture
-            for surface in furniture_surfaces(piece, assets[piece.asset])
+            for surface in furniture_surfaces(piece, _shape(piece.asset))
         ]
         if not self._surfaces:
             raise SceneError(f"{scene.name}: no furniture carries anything; add a table.")
@@ -175,7 +176,7 @@ class _Placing:
 
     def place(self, item: PlacedObject) -> PlacedObject:
         """The object at a free place, turned; it is in the way of those that follow."""
-        length, width, height = self._assets[item.asset].size
+        length, width, height = _shape(item.asset).size
         height = max(height, _LEAST_HEIGHT_M)
         for _ in range(_SUPPORTS):
             surface, carries = self._surfaces[self._draws.heavy(self._weights)]
@@ -228,14 +229,16 @@ class _Placing:
         )
 
 
-def _occupied(piece: Furniture, asset: Asset) -> list[Solid]:
-    """What a piece of furniture occupies; of what has no colliders, a curtain, what is seen."""
+@cache
+def _shape(name: str) -> Asset:
+    """An asset without what is drawn; what has no colliders, a curtain, gets the box around it."""
+    asset = load_asset(name)
     if asset.colliders:
-        return furniture_solids(piece, asset)
+        return replace(asset, parts=())
     vertices = np.concatenate([part.vertices for part in asset.parts]).astype(np.float64)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     seen = Collider("box", _three((high - low) / 2), _three((high + low) / 2))
-    return furniture_solids(piece, replace(asset, colliders=(seen,)))
+    return replace(asset, parts=(), colliders=(seen,))
 
 
 def _three(values: Array) -> tuple[float, float, float]:
