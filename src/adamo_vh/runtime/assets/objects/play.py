@@ -106,17 +106,14 @@ def toy_car() -> Asset:
         for x in (-0.020, 0.020)
     )
     bumper = rounded_box(0.058, 0.006, 0.007, 0.0025, 2)
+    bumpers = merge(bumper.moved(y=y, z=0.0125) for y in (-0.0635, 0.0635))
     parts = (
         plastic(merge((hull, top, pillar)), "red", _RED),
         plastic(merge((panes, shield, rear)), "windows", _WINDOW),
         rubber(merge(wheel.moved(x, y, 0.0145) for x, y in axles), "tyres", _BLACK),
         metal(merge(hub.moved(x, y, 0.0145) for x, y in axles), "hubs", (0.52, 0.52, 0.53)),
         plastic(lamps, "lamps", _LAMP),
-        rubber(
-            merge(bumper.moved(y=y, z=0.0125) for y in (-0.0635, 0.0635)),
-            "bumpers",
-            (0.2, 0.2, 0.2),
-        ),
+        rubber(bumpers, "bumpers", (0.2, 0.2, 0.2)),
     )
     return Asset(
         class_name="ToyCar",
