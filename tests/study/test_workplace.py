@@ -37,7 +37,7 @@ class Made:
 def made(engine: BuiltinEngine, monkeypatch: pytest.MonkeyPatch) -> list[Made]:
     engines: list[Made] = []
 
-    def create(scene: str, figure: str) -> Made:
+    def create(scene: str, figure: str, variation: int) -> Made:
         if scene == "nowhere":
             raise SceneError("no scene 'nowhere'")
         engines.append(Made(engine))
