@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 
+import pytest
+
 from adamo_vh.action import Drop, Pick
-from adamo_vh.action_server import LocalActionServer
+from adamo_vh.action_server import LocalActionServer, frame_check
 from adamo_vh.action_server.frame_check import frame_fault
-from adamo_vh.engine import ObjectMoved
+from adamo_vh.engine import ObjectMoved, acting_body
 from adamo_vh.geometry import Vec3
 from adamo_vh.observation import NOTHING
 from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.session.bodies import create_engine
 
 SMALL = (640, 360)
 
@@ -55,3 +58,14 @@ def test_few_things_that_lack_their_pixels_are_enough() -> None:
         layer[:] = NOTHING
     fault = frame_fault(view, engine.state(), engine.body)
     assert "lack an object that is there" in fault
+
+
+def test_thin_things_far_away_and_leaves_are_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(frame_check, "_MISSES", 0.0)
+    engine = create_engine("s2", variation=1)
+    body = acting_body(engine)
+    for x, y in ((1.48, 0.24), (-0.5, 0.9), (2.0, 2.5), (-1.5, -1.0)):
+        body.walk(Vec3(0.775, -0.275, 0.0))
+        body.look(Vec3(x, y, 1.13))
+        view = body.see(*SMALL)
+        assert frame_fault(view, engine.state(), body) == "", (x, y)

@@ -26,6 +26,8 @@ _MISSES = 0.5
 """Share of rays that may miss: thin things, edges, what the body's own arms hide."""
 _STEEPEST = -math.sin(math.radians(35.0))
 """Upward part of a ray's direction below which the body's own trunk may hide what it hits."""
+_THICK_PX = 4.0
+"""What shows fewer pixels across may have none."""
 
 
 def frame_fault(percept: Percept, state: WorldState, body: Body) -> str:
@@ -107,7 +109,7 @@ def _drawn_wrongly(percept: Percept, room: _Room, body: Body, step: int) -> str:
 
 
 def _left_out(percept: Percept, room: _Room, body: Body) -> str:
-    """Whether objects that a ray to their middle hits have no pixel there."""
+    """Whether objects that a ray to their middle hits have no pixel around it."""
     camera = percept.camera
     seen = camera.project(room.centres)
     size = np.array([camera.width_px, camera.height_px])
@@ -118,15 +120,20 @@ def _left_out(percept: Percept, room: _Room, body: Body) -> str:
     columns, rows = seen[there, :2].astype(np.intp).T
     if room.held is not None:
         there = there[percept.id_layers[0][rows, columns] != room.held]
+    # What is thinner than a few pixels may fall between them.
+    per_m = camera.focal_px / seen[there, 2]
+    there = there[np.sort(room.halves[there], axis=1)[:, 1] * 2 * per_m >= _THICK_PX]
     hit = room.hit(_cast(percept, seen[there, :2], body))
     # Where boxes are in each other, the hit may be on the other thing.
-    clear = hit[np.arange(len(there)), there] & (hit.sum(axis=1) == 1)
-    columns, rows = seen[there[clear], :2].astype(np.intp).T
-    shown = np.array(
-        [layer[rows, columns] == room.ids[there[clear]] for layer in percept.id_layers]
-    )
-    missed = int((~shown.any(axis=0)).sum())
-    return _verdict(missed, int(clear.sum()), "lack an object that is there")
+    clear = there[hit[np.arange(len(there)), there] & (hit.sum(axis=1) == 1)]
+    around = np.linalg.norm(room.halves[clear], axis=1) * camera.focal_px / seen[clear, 2]
+    missed = 0
+    for number, (column, row, _), reach in zip(room.ids[clear], seen[clear], around, strict=True):
+        # Between its leaves one sees past a plant: anywhere around its middle will do.
+        tall = slice(max(int(row - reach), 0), int(row + reach) + 1)
+        wide = slice(max(int(column - reach), 0), int(column + reach) + 1)
+        missed += not any((layer[tall, wide] == number).any() for layer in percept.id_layers)
+    return _verdict(missed, len(clear), "lack an object that is there")
 
 
 def _verdict(missed: int, looked: int, what: str) -> str:
