@@ -55,6 +55,7 @@ SWITCHES: dict[str, dict[str, Any]] = {
     "terse": {"terse": True},
     "fresh_view": {"fresh_view": True},
     "pictures=1": {"pictures": 1},
+    "pictures=new": {"pictures": "new"},
     "pictures_in_results": {"pictures_in_results": True},
     "closeups": {"closeups": True},
     "note_argument": {"note_argument": True},
@@ -196,7 +197,7 @@ def main() -> None:
     engine = adamo_vh.create_engine(arguments.scene)
     tasks = [task for task in TASKS if not arguments.task or task.id in arguments.task]
     plans = {task.id: oracle_actions(engine, task) for task in tasks}
-    chosen = [PROFILES["paper"], PROFILES["lean"]]
+    chosen = [PROFILES["paper"], PROFILES["lean"], PROFILES["single"]]
     if not arguments.profiles_only:
         chosen[1:1] = [profile("paper", switches) for switches in SWITCHES.values()]
         chosen += [profile("lean", {"plan": 1}), profile("lean", {"fresh_view": False})]
