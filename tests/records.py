@@ -8,7 +8,7 @@ from typing import Any
 
 from adamo_vh.record.run_folder import EVENTS, FRAMES, MANIFEST, RESULT
 
-OWN = {"seconds", "world_s", "model_s", "waited_s", "started_at", "run"}
+OWN = {"seconds", "world_s", "model_s", "waited_s", "started_at", "run", "seal"}
 """What no two runs have in common: when and where they were, and how long they took."""
 
 

@@ -18,11 +18,12 @@ from adamo_vh.cognition.turns import read_turn
 from adamo_vh.engine import WorldState
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import Manifest, summarise, write_record
+from adamo_vh.episode.sealing import write_result
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.inference.messages import AIMessage, ToolCall
 from adamo_vh.inference.model import ModelKind, Reply, Usage
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
-from adamo_vh.record.run_folder import MANIFEST, RESULT
+from adamo_vh.record.run_folder import MANIFEST
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import (
     Acted,
@@ -145,8 +146,9 @@ class Recorder:
         if reason is TerminationReason.ANSWERED:
             self.think(answer)
         self.writer.notify(Ended(self.step, reason, answer, self.world.hash(), 31.4))
-        result = summarise(self.manifest, read_trajectory(self.folder), self.world, self.folder)
-        write_record(self.folder, RESULT, result)
+        recorded = read_trajectory(self.folder)
+        result = summarise(self.manifest, recorded, self.world, self.folder)
+        write_result(self.folder, result, recorded)
 
 
 def config(task_id: str | None = "T5", instruction: str | None = None) -> EpisodeConfig:

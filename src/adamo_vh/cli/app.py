@@ -109,10 +109,16 @@ def run(
     out: RunFolder = None,
     resume: Annotated[
         Path | None,
-        typer.Option(help="Go on with an interrupted run; takes --budget and --json alone."),
+        typer.Option(
+            help="Go on with an interrupted run; takes --budget, --sign and --json alone."
+        ),
     ] = None,
     video: Annotated[
         Path | None, typer.Option(help="Film the episode: FILE.webm (VP8) or FILE.avi.")
+    ] = None,
+    sign: Annotated[
+        Path | None,
+        typer.Option(help="Sign the result with this Ed25519 private key.", metavar="KEYFILE"),
     ] = None,
     json: Json = False,
 ) -> None:
@@ -122,8 +128,8 @@ def run(
 
     caps = read_budget(pairs(budget, "budget"))
     if resume is not None:
-        refuse_others(context, "resume", "budget", "json")
-        resume_and_show(resume, caps, as_json=json)
+        refuse_others(context, "resume", "budget", "sign", "json")
+        resume_and_show(resume, caps, sign, as_json=json)
         return
     run_and_show(
         instruction,
@@ -148,6 +154,7 @@ def run(
         text_form=text,
         max_steps=max_steps,
         video=video,
+        sign=sign,
     )
 
 

@@ -22,7 +22,9 @@ from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.engine import World
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import EpisodeResult, to_json
+from adamo_vh.episode.sealing import sign_run
 from adamo_vh.record.run_folder import reserve
+from adamo_vh.record.signing import Signer
 from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.record.trajectory import Observer
 
@@ -37,12 +39,14 @@ def run_and_show(
     record: bool,
     max_steps: int,
     video: Path | None,
+    sign: Path | None,
     **settings: Any,
 ) -> None:
     """Run an episode and print what happens, or one JSON object at the end."""
     from adamo_vh.session.forecasting import refuse_early
     from adamo_vh.session.session import Session
 
+    signer = Signer(sign) if sign else None
     limits = Limits(max_steps=max_steps)
     if video is not None:
         # Drawing the film takes minutes that are not the agent's.
@@ -63,6 +67,8 @@ def run_and_show(
             _announce(ahead, config.budget)
         session.say(config.instruction)
         result = session.result()
+    if signer is not None:
+        sign_run(folder, signer)
     _show(result, folder, as_json=as_json)
 
 
@@ -89,12 +95,15 @@ def filming(path: Path, config: EpisodeConfig, observers: list[Observer]) -> Ite
         film_set.engine.close()
 
 
-def resume_and_show(folder: Path, budget: Budget, *, as_json: bool) -> None:
+def resume_and_show(folder: Path, budget: Budget, sign: Path | None, *, as_json: bool) -> None:
     """Go on with an interrupted run, under its own budget or a new one."""
     from adamo_vh.session.runs import resume_episode
 
+    signer = Signer(sign) if sign else None
     progress = () if as_json else (Progress(Console()),)
     result = resume_episode(folder, budget=budget or None, observers=progress)
+    if signer is not None:
+        sign_run(folder, signer)
     _show(result, folder, as_json=as_json)
 
 

@@ -1,4 +1,4 @@
-"""The commands about studies: bench, report, merge, reindex, score."""
+"""The commands about studies: bench, report, merge, reindex, score, verify-run."""
 
 from __future__ import annotations
 
@@ -92,6 +92,13 @@ def bench(
             "--dry-run", help="List the episodes, forecast tokens, money and hours; start nothing."
         ),
     ] = False,
+    sign: Annotated[
+        Path | None,
+        typer.Option(
+            help="Sign every result and the chain of all with this Ed25519 private key.",
+            metavar="KEYFILE",
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -129,6 +136,7 @@ def bench(
         budget=read_budget(pairs(budget, "budget")),
         frame_cache=frame_cache,
         rates=Rates(concurrent, requests_per_minute, tokens_per_minute),
+        sign=sign,
     )
     if dry_run:
         forecast_and_show(planned, out, means, as_json=json)
@@ -160,12 +168,18 @@ def report(
 def merge(
     out: Annotated[Path, typer.Argument(help="The folder of the whole study; made if missing.")],
     parts: Annotated[list[Path], typer.Argument(help="Folders of its parts, e.g. of its shards.")],
+    sign: Annotated[
+        Path | None,
+        typer.Option(
+            help="Sign what is added to the whole with this Ed25519 private key.", metavar="KEYFILE"
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Put the parts of one study together, e.g. the shards that several machines have played."""
     from adamo_vh.cli.study_folders import merge_and_show
 
-    merge_and_show(out, parts, as_json=json)
+    merge_and_show(out, parts, sign, as_json=json)
 
 
 @study_app.command()
@@ -181,6 +195,26 @@ def score(
     from adamo_vh.cli.study_folders import score_and_show
 
     score_and_show(folder, diff=diff, write=write, as_json=json)
+
+
+@study_app.command("verify-run")
+def verify_run(
+    folder: Annotated[
+        Path, typer.Argument(help="A run folder, or the folder of a study.", metavar="RUN")
+    ],
+    key: Annotated[
+        Path | None,
+        typer.Option(help="Ed25519 public key that must have signed it.", metavar="FILE"),
+    ] = None,
+    replay: Annotated[
+        bool, typer.Option(help="Execute every episode again and compare every state hash.")
+    ] = True,
+    json: Json = False,
+) -> None:
+    """Check that records are as they were written: digests, chain, signatures, score, states."""
+    from adamo_vh.cli.verify_run import verify_and_show
+
+    verify_and_show(folder, key, replayed=replay, as_json=json)
 
 
 @study_app.command()

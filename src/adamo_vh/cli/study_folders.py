@@ -17,6 +17,7 @@ from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.terminal import complain, line, put_json, say
 from adamo_vh.errors import ConfigError
 from adamo_vh.readable import readable
+from adamo_vh.record.signing import Signer
 from adamo_vh.report.page import write_page
 from adamo_vh.study.merging import merge
 from adamo_vh.study.rescoring import Rescored, score_again
@@ -70,9 +71,9 @@ def _print_cells(told: Mapping[str, Any]) -> None:
     Console().print(table)
 
 
-def merge_and_show(out: Path, parts: Sequence[Path], *, as_json: bool) -> None:
+def merge_and_show(out: Path, parts: Sequence[Path], sign: Path | None, *, as_json: bool) -> None:
     """Put parts of a study together."""
-    copied, scored = merge(out, parts)
+    copied, scored = merge(out, parts, Signer(sign) if sign else None)
     _, planned = read_planned(out)
     if as_json:
         put_json({"folder": str(out), "copied": copied, "scored": scored, "episodes": len(planned)})

@@ -21,6 +21,7 @@ from adamo_vh.geometry import Vec3
 from adamo_vh.inference.model import ModelKind, Reply, Spent, Usage
 from adamo_vh.inference.remote.capabilities import Capabilities
 from adamo_vh.perception import Labeling
+from adamo_vh.record.digest import Seal
 from adamo_vh.record.old_format import OLD_FORMAT, upgraded_result
 from adamo_vh.record.run_folder import FORMAT, MANIFEST, RESULT, check_begun, read_head
 from adamo_vh.record.termination import TerminationReason
@@ -111,6 +112,8 @@ class EpisodeResult:
     final: WorldState
     warnings: tuple[str, ...] = ()
     """What people should know of the replies; see `Reply.warning`."""
+    seal: Seal | None = None
+    """Digests of the files that this rests on, once it is written; older results have none."""
 
     @property
     def variation(self) -> int:

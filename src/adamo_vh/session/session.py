@@ -22,6 +22,7 @@ from adamo_vh.episode.result import (
     summarise,
     write_record,
 )
+from adamo_vh.episode.sealing import write_result
 from adamo_vh.errors import ConfigError, FileError, RecordError
 from adamo_vh.inference.model import Model, ModelKind, Spent
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
@@ -29,7 +30,6 @@ from adamo_vh.record.run_folder import (
     EVENTS,
     FORMAT,
     MANIFEST,
-    RESULT,
     FolderLock,
     check_unused,
 )
@@ -314,7 +314,7 @@ class Session:
         result = summarise(self.manifest, self._trajectory, final, self.folder)
         if self.folder is not None:
             try:
-                write_record(self.folder, RESULT, result)
+                write_result(self.folder, result, self._trajectory)
             except FileError as error:
                 # A full disk may take the files, never the score.
                 again = f"once that is mended: adamo-vh run --resume {self.folder}"

@@ -12,11 +12,12 @@ from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.errors import ConfigError, RecordError
 from adamo_vh.files import make_folder, naming
 from adamo_vh.record.run_folder import LOCK, FolderLock
+from adamo_vh.record.signing import Signer
 from adamo_vh.study.plan import Planned, Study
 from adamo_vh.study.store import Store, episode_folder, gathered, read_outcomes, read_planned
 
 
-def merge(out: Path, parts: Sequence[Path]) -> tuple[int, int]:
+def merge(out: Path, parts: Sequence[Path], signer: Signer | None = None) -> tuple[int, int]:
     """Copy the episodes of several folders into one; the parts stay as they are.
 
     An episode appears in the folder whole or not at all, and one that is there already is not
@@ -25,6 +26,7 @@ def merge(out: Path, parts: Sequence[Path]) -> tuple[int, int]:
     Args:
         out: The folder of the whole; may be one of the same study already.
         parts: Folders of studies of which one has all episodes of the others.
+        signer: Signs what is added to the whole.
 
     Returns:
         How many episodes were copied, and how many of the study have a score now.
@@ -42,7 +44,7 @@ def merge(out: Path, parts: Sequence[Path]) -> tuple[int, int]:
     with ExitStack() as stack:
         for part in parts:
             stack.enter_context(FolderLock(part))
-        store = stack.enter_context(Store(out, study, episodes))
+        store = stack.enter_context(Store(out, study, episodes, signer))
         copied = 0
         for part in parts:
             for outcome in read_outcomes(part)[0]:

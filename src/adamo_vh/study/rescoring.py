@@ -13,11 +13,12 @@ from adamo_vh.episode.result import (
     read_manifest,
     read_result,
     summarise,
-    write_record,
 )
+from adamo_vh.episode.sealing import write_result
 from adamo_vh.errors import AdamoError, RecordError
 from adamo_vh.record.run_folder import MANIFEST, RESULT, FolderLock
 from adamo_vh.record.trajectory import read_trajectory
+from adamo_vh.study.chain import Chain
 from adamo_vh.study.store import episode_folder, is_study, read_planned, reindex
 
 
@@ -80,7 +81,12 @@ def score_again(folder: Path, *, write: bool = False) -> tuple[Rescored, ...]:
     _, episodes = read_planned(folder)
     runs = {one.key: episode_folder(folder, one.key) for one in episodes}
     found = tuple(_again(run, key, write) for key, run in runs.items() if (run / RESULT).is_file())
-    if write and any(one.changed for one in found):
+    changed = [one.episode for one in found if one.changed]
+    if write and changed:
+        with FolderLock(folder):
+            chain = Chain(folder)
+            for key in changed:
+                chain.add(key, runs[key])
         reindex(folder)
     return found
 
@@ -96,7 +102,7 @@ def _again(run: Path, name: str, write: bool) -> Rescored:
     again = Rescored(name, before.score, after.score)
     if write and again.changed:
         with FolderLock(run):
-            write_record(run, RESULT, after)
+            write_result(run, after, read_trajectory(run))
             (run / DIAGNOSIS).unlink(missing_ok=True)
     return again
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.registry import is_remote
+from adamo_vh.record.signing import Signer
 from adamo_vh.session.builtin import check_scene
 from adamo_vh.session.forecasting import check_price
 from adamo_vh.session.minds import model_of
@@ -45,6 +46,9 @@ class Means:
     """Whether views that episodes share are drawn once in each process."""
     rates: Rates = field(default=Rates())
     """How much each provider may be asked by all processes together."""
+
+    sign: Path | None = None
+    """Private key that signs every result and the chain of all; see `Signer`."""
 
     def __post_init__(self) -> None:
         """Refuse what is nothing to play with."""
@@ -91,8 +95,9 @@ def run_study(
     episodes = plan(study)
     mine = ordered(sharded(episodes, means.shard))
     check_parts(mine, means.budget)
+    signer = Signer(means.sign) if means.sign else None
     with ExitStack() as stack:
-        store = stack.enter_context(Store(folder, study, episodes))
+        store = stack.enter_context(Store(folder, study, episodes, signer))
         tally = Tally(mine, store.outcomes)
         left = [one for one in mine if not store.is_done(one.key)]
         in_flight = means.in_flight or default_in_flight(study.models)

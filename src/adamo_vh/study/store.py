@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Self
@@ -20,8 +20,10 @@ from adamo_vh.episode.result import read_manifest, read_result
 from adamo_vh.errors import AdamoError, ConfigError, FileError, RecordError
 from adamo_vh.files import read_json, write_whole
 from adamo_vh.record.run_folder import RESULT, FolderLock
+from adamo_vh.record.signing import Signer
 from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.study.axes import spelled
+from adamo_vh.study.chain import Chain
 from adamo_vh.study.index import Index
 from adamo_vh.study.plan import Planned, Study, plan
 
@@ -154,13 +156,20 @@ def _study_of(told: Mapping[str, Any]) -> Study:
 class Store:
     """A study's folder while it is played; its owner is the only one that plays it."""
 
-    def __init__(self, folder: Path, study: Study, episodes: tuple[Planned, ...]) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        study: Study,
+        episodes: tuple[Planned, ...],
+        signer: Signer | None = None,
+    ) -> None:
         """Take a folder for a study, or go on in it.
 
         Args:
             folder: Is made if it is missing.
             study: What is played.
             episodes: Its plan.
+            signer: Signs what is added.
 
         Raises:
             FolderInUseError: Somebody else plays it now.
@@ -174,8 +183,13 @@ class Store:
         with ExitStack() as stack:
             stack.enter_context(FolderLock(folder))
             self._check(study)
+            self._chain = Chain(folder, signer)
             self.outcomes, self.damaged = gathered(folder, self._index.read(), episodes)
             write_study(folder, study, episodes)
+            # What was finished, or scored again, in the moment before everything was killed.
+            for key in self.outcomes:
+                with suppress(RecordError):  # A damaged result stays out, and verify-run says so.
+                    self._chain.add(key, episode_folder(folder, key))
             self._index.replace(self.outcomes.values())
             self._closing.enter_context(stack.pop_all())
 
@@ -205,6 +219,7 @@ class Store:
             FileError: It cannot be written; the run folder holds it all the same.
         """
         self.outcomes[outcome.key] = outcome
+        self._chain.add(outcome.key, episode_folder(self.folder, outcome.key))
         self._index.put([outcome])
 
     def close(self) -> None:
