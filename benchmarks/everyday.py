@@ -1,10 +1,11 @@
 """What people say first to a virtual human, said to a player and judged by world and answer.
 
     python -m benchmarks.everyday [--model baseline] [--scene s1] [--labeling sem]
-        [--profile paper] [--resolution 960x540] [--lines 3,7] [--json]
+        [--profile paper] [--resolution 960x540] [--lines 3,7]
+        [--file benchmarks/further.tsv] [--json]
 
-The instructions and their conditions are in `everyday.tsv`. An answer is judged by its text alone:
-what it states must be so, whatever was asked.
+The instructions and their conditions are in `everyday.tsv`, more of them in `further.tsv`. An
+answer is judged by its text alone: what it states must be so, whatever was asked.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from adamo_vh.episode.config import read_resolution
 _DATA = Path(__file__).with_suffix(".tsv")
 
 
-def lines(scene: str) -> Iterator[tuple[str, str]]:
-    """Each instruction with its condition in a scene."""
-    for line in _DATA.read_text(encoding="utf-8").splitlines():
+def lines(scene: str, data: Path = _DATA) -> Iterator[tuple[str, str]]:
+    """Each instruction of a file with its condition in a scene."""
+    for line in data.read_text(encoding="utf-8").splitlines():
         if line and not line.startswith("#"):
             instruction, *conditions = line.split("\t")
             yield instruction, conditions[-1] if scene == "s2" else conditions[0]
@@ -40,13 +41,14 @@ def main() -> None:
     parser.add_argument("--profile", default="paper")
     parser.add_argument("--resolution", type=read_resolution, default=(960, 540))
     parser.add_argument("--lines", default="")
+    parser.add_argument("--file", type=Path, default=_DATA)
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     rows: list[dict[str, Any]] = []
     wanted = {int(number) for number in arguments.lines.split(",") if number}
     for scene in arguments.scene or ["s1", "s2"]:
         engine = adamo_vh.create_engine(scene)
-        for number, (instruction, condition) in enumerate(lines(scene), start=1):
+        for number, (instruction, condition) in enumerate(lines(scene, arguments.file), start=1):
             if wanted and number not in wanted:
                 continue
             engine.reset(0)

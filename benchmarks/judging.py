@@ -240,7 +240,20 @@ def _stands(outcome: Outcome, x: str, y: str, within_m: str = "0.5") -> bool:
     )
 
 
+def _at(outcome: Outcome, object_id: str, x: str, y: str, within_m: str = "0.1") -> bool:
+    item = _item(outcome, object_id)
+    place = Vec3(float(x), float(y), 0.0)
+    return not item.held and item.box.center.horizontal_distance(place) <= float(within_m)
+
+
+def _gazes(outcome: Outcome, x: str, y: str, z: str, within_m: str = "0.2") -> bool:
+    point = Vec3(float(x), float(y), float(z))
+    return outcome.after.body.gaze.distance(point) <= float(within_m)
+
+
 _PARTS: dict[str, Callable[..., bool]] = {
+    "at": _at,
+    "gazes": _gazes,
     "holds": _held,
     "floor": _floor,
     "only_floor": _only_floor,

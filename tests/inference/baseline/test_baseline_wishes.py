@@ -129,8 +129,20 @@ SENTENCES = {
     "Put the plate on the floor, then pick it again": ["Plate floor", "Plate hold"],
     "Put the cup on the coffee table and the plate on the dining table": [
         "Cup surface(coffee table)", "Plate surface(dining table)"],
+    "Pick the cup and put everything else on the floor": ["all but(Cup) floor", "Cup hold"],
+    "Take the plate. Put it on the floor. Then take the cup and put it next to it.": [
+        "Plate floor", "Cup near(Plate)"],
+    "Put one battery on the floor and the other one in the corner": [
+        "Battery floor", "Battery other corner"],
+    "Walk to the plant and pick it up": ["IndoorPlant hold", "! walk IndoorPlant"],
+    "I dropped my key. Can you find it and give it to me?": ["Key hold"],
+    "Which object is blue?": ["? exists all blue"],
+    "Can you see the plant?": ["? exists IndoorPlant"],
+    "Put the pills where the lighter is": ["Pills near(Lighter)"],
+    "I need the binoculars": ["Binoculars hold"],
+    "The key. On the floor. Now.": ["Key floor"],
     "Pick up the battery and put it near the other battery": [
-        "Battery near(Battery other but(Battery))"],
+        "Battery near(Battery other)"],
     "Put the plate and the cup together": ["Cup near(Plate)"],
     "Put 2 locks near the plant": ["all Lock x2 near(IndoorPlant)"],
     "Put objects 2, 3 and 4 near object 57": ["all 2 3 4 near(57)"],

@@ -281,6 +281,7 @@ def _things(cursor: Cursor, reading: Reading) -> list[Description]:
     """A list of noun phrases, or a pronoun."""
     if token := cursor.accept(Kind.PRONOUN):
         if meant := reading.meant(token):
+            reading.pointed = meant
             return meant
         raise NotUnderstood(f"'{token.text}' (I do not know what it refers to)")
     if cursor.peek() is Kind.EVERY and cursor.peek(1) in (*PLACES, Kind.PRONOUN):

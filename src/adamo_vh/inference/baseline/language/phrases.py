@@ -21,6 +21,9 @@ _PLURAL_NOUNS = (
 )
 
 
+_SPARED = {"but one": 1, "but two": 2, "but three": 3}
+
+
 class NotUnderstood(Exception):  # noqa: N818 - a control signal of the parser, never seen outside
     """A part of the instruction has no meaning here."""
 
@@ -94,6 +97,7 @@ class _Draft:
     but: list[Description] = field(default_factory=list)
     every: bool = False
     count: int | None = None
+    spared: int = 0
     generic: bool = False
     plural: bool = False
     source: tuple[Relation, tuple[str, ...]] | None = None
@@ -125,6 +129,7 @@ class _Draft:
             other=self.other,
             definite=self.definite and not self.plural,
             but=tuple(self.but),
+            spared=self.spared,
             every=self.every or (self.plural and (self.count or 0) > 1),
             count=self.count if self.plural else None,
             source=self.source,
@@ -174,6 +179,7 @@ def _adjective(token: Token, draft: _Draft) -> None:
     match token.kind:
         case Kind.EVERY:
             draft.every = True
+            draft.spared = _SPARED.get(" ".join(token.text.split()[1:3]), 0)
         case Kind.COUNT:
             draft.count = int(token.value)
         case Kind.COLOUR:

@@ -128,6 +128,8 @@ def _anchor(cursor: Cursor, reading: Reading) -> Description:
     """The thing that a place is told by."""
     if token := cursor.accept(Kind.PRONOUN):
         meant = reading.last or reading.waiting
+        if reading.before and meant == reading.pointed:  # "take the cup and put it next to it"
+            meant = reading.before
         if not meant:
             raise NotUnderstood(f"'{token.text}' (I do not know what it refers to)")
         return meant[-1] if len(meant) == 1 or not token.text.startswith("th") else meant[0]

@@ -85,6 +85,8 @@ class Description:
     """Said with "the", as if there were one."""
     but: tuple[Description, ...] = ()
     """What is left out."""
+    spared: int = 0
+    """How many of all are left out, whichever."""
 
     @property
     def compares(self) -> bool:

@@ -55,6 +55,8 @@ _RULES: tuple[tuple[str, Ask], ...] = (
     (rf"(?:which|what)(?: of them)?(?: {_NOUN})? (?:is|are) (?P<thing>(?:the )?(?:second |third )?"
      r"(?:smallest|largest|biggest|tallest|shortest|highest|tiniest|littlest|greatest|lowest).*?)"
      rf"{_TAIL}", Ask.WHICH),
+    (rf"(?:which|what)(?: of them)?(?: (?P<noun>{_NOUN}|\w+))? (?:is|are|looks?) "
+     rf"(?P<quality>(?!there\b)\w[\w ]*?){_TAIL}", Ask.EXISTS),
     (rf"(?:which|what) (?P<thing>\w.*?) (?:are|is|do you see|can you see|have you seen)(?: there)?"
      rf"{_TAIL}", Ask.EXISTS),
     (rf"(?:what|which {_NOUN}|what {_NOUN}) (?:do|can|did) you (?:see|find|notice|spot|"
@@ -111,6 +113,12 @@ def read_question(text: str, before: tuple[str, ...] = ()) -> Question | None:
 
 def _question(ask: Ask, match: re.Match[str], before: tuple[str, ...]) -> Question | None:
     groups = match.groupdict()
+    if groups.get("quality"):
+        noun = re.sub(r"s$", "", groups.get("noun") or "") or "object"
+        noun = "object" if noun in ("thing", "item", "one") else noun
+        things = read_things(f"all the {groups['quality']} {noun}s", before)
+        known = things and len(things) == 1 and (things[0].by_looks or things[0].size)
+        return Question(ask, things[0]) if things and known else None
     spoken = next((groups[name] for name in ("thing", "thing2", "thing3") if groups.get(name)), "")
     place = None
     if groups.get("place"):

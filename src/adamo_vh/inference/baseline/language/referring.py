@@ -40,13 +40,15 @@ class Reading:
     place: Place | None = None
     """What "there" means."""
     before: list[Description] = field(default_factory=list)
-    """What was meant before the latest; for "the other"."""
+    """What was meant before the latest, for a second "it"."""
+    pointed: list[Description] = field(default_factory=list)
+    """What the latest pronoun for things to handle meant."""
     remarks: list[str] = field(default_factory=list)
 
     def take(self, things: Sequence[Description]) -> None:
         """Things are picked up."""
         self.waiting.extend(things)
-        self.last = list(things)
+        self.before, self.last = self.last, list(things)
 
     def put(self, things: Sequence[Description], place: Place) -> None:
         """Things are put to a place."""
@@ -111,8 +113,13 @@ def resolved_other(thing: Description, reading: Reading) -> Description:
     """Read "the other one" behind "the lock" as another lock."""
     if not thing.other or not reading.last:
         return thing
+    if thing.every and not thing.classes and "other objects" in thing.text:
+        spoken = [*(goal.target for goal in reading.goals), *reading.waiting, *reading.last]
+        return replace(thing, but=(*thing.but, *dict.fromkeys(spoken)), other=False)
     known = reading.last[-1]
     kind = thing if thing.classes else replace(thing, classes=_classes(known))
+    if replace(known, text="", definite=False, count=None) == Description("", classes=kind.classes):
+        return kind  # "a battery ... the other one": what was taken first is not taken again
     return replace(kind, but=(*thing.but, known), other=True)
 
 

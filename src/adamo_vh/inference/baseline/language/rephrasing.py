@@ -43,6 +43,7 @@ _COUNTED = re.compile(
 )
 _WORDS = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"]
 _NUMBER_LEFT_OUT = re.compile(
+    r"(?!\ball but (?:one|two|three)\b)"
     r"\b(?:all|every\w*|each|any\w*|both|(?:the|two|three|four|five) \w+s)\b[^.;!?]*?"
     r"\b(?:but|except|save|apart from|other than|excluding|aside from|leaving out|minus|"
     r"with the exception of|leave(?: out)?|leaving|keep)(?: for)?"
@@ -50,13 +51,40 @@ _NUMBER_LEFT_OUT = re.compile(
     r"(?:one|two|three|four|five|six|seven|eight|nine|ten|some|few|couple|half|single)\b"
     r"(?: of)?(?: the)?(?: (?!on\b|in\b|to\b|near\b|next\b)\w+)?"
 )
+_SPOKEN: tuple[tuple[str, str], ...] = (
+    (r"\bpl[sz]\b", "please"),
+    (r"^(?:i|we)(?: have|'ve)? (?:just )?(?:dropped|lost|misplaced|forgot|left) "
+     r"((?:my|the|our) [\w ]+?)[.,;!]+", r"find \1,"),
+    (r"\b(\w+) neither (.+?) nor (.+)", r"do not \1 \2 or \3"),
+    (r"^without (touching|moving|taking|using) ([^,]+), (.+)$", r"do not touch \2, \3"),
+    (r"^(.+?),? without (?:touching|moving|taking|using) ([^,.]+)$", r"do not touch \2, \1"),
+    (r"\b(?:leave|let) (.+?) (?:alone|where (?:it|they) (?:is|are)|as (?:it|they) (?:is|are)|"
+     r"untouched|in (?:its|their) place)\b(?: and\b)?", r"do not touch \1,"),
+    (r"\ball (?:of )?(?:the )?(\w+(?: \w+)?) (?:but|except|save)(?: for)? (one|two|three)\b"
+     r"(?: of them)?(?! (?!on\b|in\b|to\b|near\b|next\b)\w)", r"all but \2 \1"),
+    (r"\ball (?:except|save)(?: for)? (one|two|three)\b", r"all but \1"),
+)  # fmt: skip
+"""What changes which parts an instruction has."""
 _RULES: tuple[tuple[str, str], ...] = (
     (r"\bi'd\b", "i would"),
+    (r"\b(?:possibly|perhaps|maybe)\b ?", ""),
+    (r"\bpls\b|\bplz\b", "please"),
+    (r"\bbesides (?=(?:the|a|an|my)\b)", "beside "),
+    (r"^(?:i|we) (?:need|want|would like) (?=(?:the|a|an|my|that|some) [^,.;]*$)"
+     r"(?!.*\b(?:on|in|next|near|to|at|beside|under|between|behind|be)\b)", "get me "),
+    (r"\b(?:to |over to )?where (the \w+(?: \w+)?) (?:is|are|stands|lies)\b", r"next to \1"),
+    (r"\b(?:that|those|the) ([\w ]+?) over there\b", r"the \1"),
+    (r"\b(everything|anything|all|every\w*|each)\b([^.;!?]*?) (?:that|which) (?:is|are) not "
+     r"(?:an? |the )?(?=\w)", r"\1\2 except "),
+    (r"\b(?:all |everything )?else\b|\b(?:all )?the rest\b(?: of (?:them|the \w+|it))?",
+     "all other objects"),
+    (r"\bnothing (?:but|except|other than) ", ""),
+    (r"\bthe (\w[\w ]*?)\. (?=(?:on|in|next to|near|under|behind) )", r"the \1 "),
     (r"^(?:i'm|i am|we are|we're|it is|it's) (?:so |very )?\w+\s*[,.;!]\s*", ""),
     (r"\b(?:that|which) (?:is|are) (?:not|n't) (?:an? |the )?", "except "),
     (r"\b(?:that|which) (?:isn't|aren't|is not|are not) (?:an? |the )?", "except "),
     (r"\b(everything|anything|all (?:of )?(?:the )?\w+|every \w+|all) but "
-     r"(?!not\b|do\b|don't|never|then\b|first\b|only\b|put\b|place\b|pick\b|take\b|get\b|"
+     r"(?!not\b|(?:one|two|three)\b|do\b|don't|never|then\b|first\b|only\b|put\b|place\b|pick\b|take\b|get\b|"
      r"bring\b|move\b|leave\b|drop\b|set\b|lay\b|keep\b|look\b|go\b|hold\b|avoid\b)",
      r"\1 except "),
     (r"\b((?:everything|anything|all|every|each)\b[^.;!?]*?) but (?:for )?(?=(?:the|an?|my)\b)",
@@ -103,6 +131,17 @@ _RULES: tuple[tuple[str, str], ...] = (
 @cache
 def _compiled() -> tuple[tuple[re.Pattern[str], str], ...]:
     return tuple((re.compile(pattern), plain) for pattern, plain in _RULES)
+
+
+def spoken_plainly(text: str) -> str:
+    """An instruction whose parts say plainly what to do and what not to do.
+
+    Args:
+        text: Lower case.
+    """
+    for pattern, plain in _SPOKEN:
+        text = re.sub(pattern, plain, text)
+    return text
 
 
 def rephrased(text: str) -> str:

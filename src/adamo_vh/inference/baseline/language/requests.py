@@ -9,7 +9,11 @@ from functools import lru_cache
 from adamo_vh.inference.baseline.language.grammar import read_things, wishes
 from adamo_vh.inference.baseline.language.plan import Act, Description, Plan
 from adamo_vh.inference.baseline.language.questions import read_question, read_statement
-from adamo_vh.inference.baseline.language.rephrasing import number_left_out, with_lengths
+from adamo_vh.inference.baseline.language.rephrasing import (
+    number_left_out,
+    spoken_plainly,
+    with_lengths,
+)
 from adamo_vh.inference.baseline.language.spelling import corrected, known_words, spelled
 
 CAN = (
@@ -131,6 +135,7 @@ def understand(instruction: str, before: tuple[str, ...] = (), former: str = "")
         The plan; if any part has no meaning, one that names this part and does nothing.
     """
     text = " ".join(instruction.lower().replace("\u2019", "'").replace("@", " ").split())
+    text = spoken_plainly(text)
     plan = _read(text, before)
     if plan.problem and former:
         plan = _gone_on_with(former, text, before) or plan
@@ -237,9 +242,11 @@ def _by_parts(text: str, before: tuple[str, ...]) -> Plan:
     rest: list[str] = []
     plan = Plan()
     spared: list[Description] = []
+    spoken = ""
     for part in _parts(text):
-        more = _special_part(part, before)
+        more = _special_part(_with_pronouns(part, spoken) if not rest else part, before)
         spared += _spared(part, before)
+        spoken = _spoken(more, spared) or spoken
         if more is None:
             rest.append(part)
         elif more.problem:
@@ -248,12 +255,21 @@ def _by_parts(text: str, before: tuple[str, ...]) -> Plan:
             plan = _joined(plan, more)
     if rest:
         read = wishes(", ".join(rest), before)
+        if "what it refers to" in read.problem and spoken:
+            rest[0] = _with_pronouns(rest[0], spoken)
+            read = wishes(", ".join(rest), before)
         if read.problem:
             read = _further_split(rest, before, Plan()) or read
         if read.problem:
             return read
         plan = _joined(_without(read, spared), plan)
     return plan if not plan.empty else Plan(problem="what to do, as I found no wish in it")
+
+
+def _spoken(plan: Plan | None, spared: list[Description]) -> str:
+    """What "it" means behind a part that is no wish: what was looked at or shall be left alone."""
+    targets = [act.target.text for act in plan.acts if act.target] if plan else []
+    return (targets or [thing.text for thing in spared[-1:]] or [""])[-1]
 
 
 def _spared(part: str, before: tuple[str, ...]) -> list[Description]:
@@ -281,10 +297,12 @@ def _further_split(rest: list[str], before: tuple[str, ...], plan: Plan) -> Plan
     if len(pieces) == len(rest):
         return None
     kept: list[str] = []
+    spoken = ""
     for piece in pieces:
         more = _special_part(piece, before)
+        spoken = _spoken(more, []) or spoken
         if more is None:
-            kept.append(piece)
+            kept.append(piece if kept else _with_pronouns(piece, spoken))
         elif more.problem:
             return more
         else:
@@ -321,7 +339,7 @@ def _special_part(part: str, before: tuple[str, ...]) -> Plan | None:
         heeded = f"'{plain.rstrip(' .?!')}'" if match["bare"] else ""
         what = f"I heed {heeded}" if heeded else f"I do not {match['what'].rstrip(' .?!')}"
         return Plan(remarks=(f"As you asked, {what}.",))
-    if question := read_question(plain, before):
+    if question := read_question(plain, before) or read_question(part, before):
         return Plan(questions=(question,))
     if _PAUSE.fullmatch(plain):
         return Plan(remarks=("Then I wait.",))

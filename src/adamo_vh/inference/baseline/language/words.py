@@ -89,7 +89,8 @@ _PHRASES: dict[Kind, str] = {
     Kind.TAKE: "pick|pick up|picking|picking up|take|taking|take up|grab|grabbing|get|getting|"
     "get hold of|fetch|fetching|lift|lift up|lifting|collect|collecting|hold|holding|gather|"
     "gathering|grasp|retrieve|seize|choose|hold on to|pick out|give me|hand me|pass me|get me|"
-    "bring me|fetch me|grab me|gather up|collect up|find and pick|find and pick up|clutch|"
+    "bring me|fetch me|grab me|give|giving me|handing me|passing me|bringing me|hand over|pass|"
+    "gather up|collect up|find and pick|find and pick up|clutch|"
     "pick me up",
     Kind.FIND: "find|finding|look for|looking for|locate|search for|seek|identify|"
     "find out|detect|discover|determine",
@@ -136,7 +137,8 @@ _PHRASES: dict[Kind, str] = {
     "colouring|coloring",
     Kind.EVERY: "all|every|each|all the|all of the|all of|everything|anything|any and all|"
     "every single|each and every|whatever|each of the|every one of the|all those|all these|"
-    "every last",
+    "every last|all but one|all but two|all but three|all but one of the|all but two of the|"
+    "all but one of|all but two of",
     Kind.DET: "the|a|an|that|this|those|these|your|my|its|their|any|some|another",
     Kind.PRONOUN: "it|them|they|both of them|all of them|each of them|this one|that one|"
     "these ones|both there|each one|all three|all|those things|these things|these objects|"
@@ -189,7 +191,7 @@ _PHRASES: dict[Kind, str] = {
     "next to one another|beside one another|near one another|close to one another|close together|"
     "side by side|together|by each other|in a group|in one place|near to each other|"
     "alongside each other",
-    Kind.EXCEPT: "except|except for|apart from|other than|excluding|save for|"
+    Kind.EXCEPT: "except|except for|save|but not|apart from|other than|excluding|save for|"
     "with the exception of|aside from|leaving out|minus",
     Kind.OTHER: "other|others|remaining",
     Kind.OR: "or|or else|or maybe",

@@ -95,7 +95,9 @@ def _tell_goal(goal: Goal, index: int, memory: Memory, prompt: Prompt, account: 
     jobs = [job for job in memory.jobs if job.goal == index]
     target = goal.target
     if not jobs:
-        account.missed.append(_not_found(goal, index, memory))
+        left = _left_out(goal, index, jobs, memory)
+        more = f"I found no more than {left} and left them out" if left else ""
+        account.missed.append(more or _not_found(goal, index, memory))
         return
     for job in jobs:
         said = claim(goal, index, job.tag, memory, prompt.room)
@@ -109,7 +111,16 @@ def _tell_goal(goal: Goal, index: int, memory: Memory, prompt: Prompt, account: 
         account.missed.append(f"I found only {len(jobs)} of {target.count} ({tags})")
     if target.every and not target.count and not target.ids:
         account.open_ended = True
+    if left := _left_out(goal, index, jobs, memory):
+        account.doubts.append(f"I left out {left}.")
     _identity(goal, index, jobs, memory, account)
+
+
+def _left_out(goal: Goal, index: int, jobs: list[Job], memory: Memory) -> str:
+    """Those that "all but one" left out."""
+    fits, taken = memory.fits.get(("goal", index), {}), {job.tag for job in jobs}
+    left = sorted(t for t, fit in fits.items() if fit >= _SURE and t not in taken)
+    return _and(left) if left and goal.target.spared else ""
 
 
 def _identity(goal: Goal, index: int, jobs: list[Job], memory: Memory, account: _Account) -> None:

@@ -104,7 +104,7 @@ def tell(question: Question, index: int, memory: Memory, prompt: Prompt, stage: 
 def _about(question: Question, found: list[str], memory: Memory, prompt: Prompt) -> str:
     """What is asked of certain things."""
     if question.ask is Ask.EXISTS:
-        seen = ", ".join(where(tag, memory) for tag in found[:6])
+        seen = "; ".join(where(tag, memory) for tag in found[:6])
         return f"Yes, I know of {len(found)}: {seen}."
     if question.ask is Ask.COLOUR:
         return " ".join(_colour(tag, memory) for tag in found[:4])

@@ -28,6 +28,8 @@ _NEVER_M = 99.0
 OF_CONDITION = 99
 """The condition counts as a further question, with this number."""
 _LIKE_WOOD = ("orange", "brown", "yellow")
+_PERHAPS, _SURELY = 0.15, 0.6
+"""Fits in between leave in doubt whether a thing is meant."""
 _CLOSER = 0.9
 """A view from less than this share of the former distance replaces what was believed."""
 
@@ -62,6 +64,7 @@ def recalled(prompt: Prompt, plan: Plan) -> Memory:
         for event, search in zip(turn.events, searches, strict=False):
             happened(event, search, memory, plan, prompt.room)
     judge_by_text(memory, plan)
+    memory.in_doubt = _in_doubt(plan, memory)
     if prompt.body.hand is not None:
         memory.hand = "" if prompt.body.hand == "empty" else prompt.body.hand
     _stand(prompt, memory)
@@ -204,10 +207,27 @@ def look(prompt: Prompt, plan: Plan, memory: Memory, reader: WordReader | None) 
         return
     if prompt.fresh:
         _see(prompt, plan, memory, sights(prompt, reader, _asks_for_outlines(plan)))
+        memory.in_doubt = _in_doubt(plan, memory)
     events = prompt.turns[-1].events if prompt.turns else ()
     for event in events:
         if event.pictures and event.tag in memory.things:
             _see_closely(event, prompt, plan, memory, reader)
+
+
+def _in_doubt(plan: Plan, memory: Memory) -> frozenset[str]:
+    """Things that may or may not belong to a group, and those whose colour is not made out."""
+    of_open = list(open_slots(plan, memory))
+    found = {
+        tag
+        for slot, description in of_open
+        if description.every and (description.classes or description.colours)
+        for tag, fit in memory.fits.get(slot, {}).items()
+        if _PERHAPS <= fit < _SURELY
+    }
+    if asks_for_colours(plan):
+        kinds = {kind for _, description in of_open for kind in description.classes}
+        found |= {t for t in memory.things if class_of(t) in kinds and t not in memory.looks}
+    return frozenset(found)
 
 
 def _asks_for_outlines(plan: Plan) -> bool:
@@ -252,7 +272,9 @@ def _see(prompt: Prompt, plan: Plan, memory: Memory, looked_at: Mapping[str, Sig
             words = colour_words(sight) if sight else ""
             kind = prototypes()[likeliest(beliefs[tag])]
             # Around long things much of the box shows the wood behind them.
-            untold = kind.transparent or ("long" in kind.shape and words in _LIKE_WOOD)
+            untold = kind.transparent or (
+                "long" in kind.shape and words.split(" ")[0] in _LIKE_WOOD
+            )
             if words and not untold and (nearer or tag not in memory.looks):
                 memory.looks[tag] = words
     everything = tuple(memory.things.values())

@@ -117,6 +117,8 @@ def _is_single_class(goal: Goal) -> bool:
 def _members(description: Description, fits: dict[str, float]) -> list[str]:
     ordered = sorted(fits, key=lambda tag: (-fits[tag], tag))
     members = [tag for tag in ordered if fits[tag] >= _MEMBER]
+    if description.spared:
+        return members[: -description.spared]
     return members[: description.count] if description.count else members
 
 
@@ -191,8 +193,10 @@ def _factors(
 ) -> list[float]:
     factors = []
     if description.classes:
-        fits = [beliefs.get(n, 0.0) * 0.85**i for i, n in enumerate(description.classes)]
-        factors.append(max(fits))
+        # Of one thing, the most usual meaning is likelier; a group has all meanings.
+        usual = 1.0 if description.every else 0.85
+        fits = [beliefs.get(n, 0.0) * usual**i for i, n in enumerate(description.classes)]
+        factors.append(min(sum(fits), 1.0) if description.every else max(fits))
         if class_of(thing.tag):
             said = [_said(f, sight, seen) for f, seen in _looks(description, beliefs, sight)]
             return [min([*factors, *said])]

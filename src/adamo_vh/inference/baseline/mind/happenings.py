@@ -20,6 +20,8 @@ _FEW_TRIES = 2
 """The same for a place that allows of no other."""
 FAR_M = 2.6
 """From farther away, small things and looks are not told reliably."""
+NEARBY_M = 1.3
+"""What is in doubt is looked at from no farther than this, or from as near as one gets."""
 _SAME_PLACE_M = 0.3
 _EDGE_M = 0.3
 _RESTS = re.compile(r"rests at (\([^)]*\)),? ((?:on|in|under|inside|at) .+?)(?:[,;]|\.?$|\. )")
@@ -78,7 +80,7 @@ def _seen_nearby(place: Vec3, memory: Memory) -> None:
     """Looked at once from as near as one gets, it counts as seen, even if it is hidden there."""
     for tag, thing in memory.things.items():
         if thing.position.horizontal_distance(place) < _SAME_PLACE_M and tag in memory.seen_m:
-            memory.seen_m[tag] = min(memory.seen_m[tag], FAR_M)
+            memory.seen_m[tag] = min(memory.seen_m[tag], NEARBY_M)
 
 
 def _picked(event: Event, refused: bool, memory: Memory) -> None:

@@ -98,6 +98,8 @@ class Memory:
     jobs: list[Job] = field(default_factory=list)
     fits: dict[Slot, dict[str, float]] = field(default_factory=dict)
     """How well things fit each description of the plan, 0 to 1."""
+    in_doubt: frozenset[str] = frozenset()
+    """Things of which it must be seen from nearby whether they belong to a group."""
     things: dict[str, Thing] = field(default_factory=dict)
     seen_m: dict[str, float] = field(default_factory=dict)
     """From how near the pixels of things were looked at, metres."""

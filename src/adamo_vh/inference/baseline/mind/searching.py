@@ -8,7 +8,7 @@ from enum import IntEnum
 
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.baseline.language.plan import Act
-from adamo_vh.inference.baseline.mind.happenings import FAR_M
+from adamo_vh.inference.baseline.mind.happenings import FAR_M, NEARBY_M
 from adamo_vh.inference.baseline.mind.memory import Memory, Search, Thing
 from adamo_vh.inference.baseline.prompt.reading import Prompt, Room
 
@@ -118,18 +118,24 @@ def aim(act: Act, prompt: Prompt, memory: Memory) -> Vec3 | None:
 
 
 def _far_thing(prompt: Prompt, memory: Memory) -> Thing | None:
-    """The nearest of the things that were seen from afar only."""
+    """The nearest of the things that were seen from too far."""
     if memory.visits >= _MOST_VISITS:
         return None
     here = prompt.body.position
-    far = [thing for tag, thing in memory.things.items() if memory.seen_m.get(tag, 0.0) > FAR_M]
+    far = [t for t in memory.things.values() if memory.seen_m.get(t.tag, 0.0) > _need_m(t, memory)]
     return min(far, key=lambda t: (here.horizontal_distance(t.position), t.tag), default=None)
+
+
+def _need_m(thing: Thing, memory: Memory) -> float:
+    """From how near a thing must be seen."""
+    return NEARBY_M if thing.tag in memory.in_doubt else FAR_M
 
 
 def _go_closer(prompt: Prompt, memory: Memory, thing: Thing) -> SearchStep:
     # An odd count of visits means that the last one was a walk, which has come as near as it can.
     came = memory.visits % 2 == 1
-    if came or prompt.body.position.horizontal_distance(thing.position) < FAR_M:
+    apart = prompt.body.position.horizontal_distance(thing.position)
+    if came or apart < _need_m(thing, memory):
         return SearchStep("Look", thing.position, Search.NEARER)
     place = Vec3(thing.position.x, thing.position.y, 0.0)
     return SearchStep("Walk", place, Search.APPROACH)

@@ -149,13 +149,24 @@ class Prompt:
     def spoken_of(self) -> tuple[str, ...]:
         """Tags of former instructions that "it" may mean, the latest first."""
         tags: list[str] = []
-        if self.body.hand and self.body.hand != "empty":
-            tags.append(self.body.hand)
+        # What the hand holds now may have been taken since: the meaning must not change on the way.
+        if held := self._held_before():
+            tags.append(held)
         for turn in reversed(self.earlier):
             handled = [e.tag for e in turn.events if e.name in ("Pick", "Drop") and e.tag]
             tags += [] if not turn.answer else _TAG.findall(turn.answer)
             tags += reversed(handled)
         return tuple(dict.fromkeys(tags))
+
+    def _held_before(self) -> str:
+        """The tag in the hand when the instruction was given, as far as texts tell."""
+        if self.began and self.began.hand:
+            return "" if self.began.hand == "empty" else self.began.hand
+        held = ""
+        for event in (event for turn in self.earlier for event in turn.events):
+            if event.name in ("Pick", "Drop") and event.outcome in ("done", "corrected"):
+                held = event.tag if event.name == "Pick" else ""
+        return held
 
     @property
     def points_key(self) -> tuple[tuple[float, float, float], ...]:

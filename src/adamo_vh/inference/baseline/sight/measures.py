@@ -39,8 +39,10 @@ _BROWN_BELOW = 140
 _ENOUGH_PX = 150
 _SEE_THROUGH = 0.5
 _RIVAL_SHARE = 0.2
-_MAIN_SHARE = 0.5
+_VIVID_SHARE, _PLAIN_SHARE = 0.45, 0.5
 """Share from which on a colour is said to be that of a thing."""
+_PLAIN = ("brown", "black", "grey", "white")
+"""Colours that wood, shadows and highlights have as well."""
 _ON_EVERYTHING = 0.2
 """Share of black, grey and white that shadows and highlights make."""
 _SAMPLES = 8000
@@ -138,7 +140,12 @@ def colour_words(sight: Sight) -> str:
         for name, share in sight.colours.items()
     }
     ordered = sorted(shares, key=lambda name: (-shares[name], name))
-    if not ordered or shares[ordered[0]] < _MAIN_SHARE:
+    if not ordered or shares[ordered[0]] < (_PLAIN_SHARE if ordered[0] in _PLAIN else _VIVID_SHARE):
         return ""
     rival = shares[ordered[1]] if len(ordered) > 1 else 0.0
-    return ordered[0] if rival < _RIVAL_SHARE else ""
+    if rival < _RIVAL_SHARE:
+        return ordered[0]
+    third = shares[ordered[2]] if len(ordered) > 2 else 0.0
+    # Brown is what orange and yellow look like in the shade.
+    shaded = ordered[1] == "brown" and ordered[0] in ("orange", "yellow")
+    return f"{ordered[0]} and brown" if shaded and third < _RIVAL_SHARE else ""

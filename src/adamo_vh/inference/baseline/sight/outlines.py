@@ -22,6 +22,7 @@ _TURNS = 8
 _RIM_POINTS = 12
 _SPREAD = 0.16
 """Standard deviation of the logarithm of a side, within a class."""
+_BOX_OFF_PX = 1.5
 _MOST = 12.0
 _NEAREST_M = 0.2
 
@@ -55,7 +56,8 @@ def misfits(things: Sequence[Listed], camera: Camera) -> Mapping[str, Mapping[st
         corners, outlines.starts, axis=1
     )
     seen = np.array([[(max(x1 - x0, 1), max(y1 - y0, 1))] for _, (x0, y0, x1, y1) in known], float)
-    off = np.log(seen / np.maximum(spans, 1.0)) / _SPREAD
+    # A box is told, or found in the picture, to about a pixel on either side.
+    off = np.log(seen / np.maximum(spans, 1.0)) / np.hypot(_SPREAD, _BOX_OFF_PX / seen)
     best = np.minimum.reduceat((off**2).sum(axis=2) / 2, outlines.first_turns, axis=1)
     nearest = pixels[..., 2].min(axis=1)
     return {
