@@ -1,8 +1,10 @@
-"""`adamo-vh tasks`, and `verify` and `check` below it."""
+"""`adamo-vh tasks`, and `verify`, `check` and `generate` below it."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
@@ -106,6 +108,48 @@ def check(file: str, scene: str | None, random_episodes: int, *, as_json: bool) 
         put_json({"task": task.id, **told, "sound": sound, "scenes": rows})
     if not sound:
         raise typer.Exit(Exit.NO)
+
+
+def generate(
+    seed: int,
+    count: int,
+    scenes: Sequence[str],
+    split: str,
+    random_episodes: int,
+    out: Path | None,
+    *,
+    as_json: bool,
+) -> None:
+    """Make new tasks, and write each as soon as it is proved."""
+    from adamo_vh.session.generating import generate, write_task
+
+    folder = out or Path("tasks") / f"{split}-{seed}"
+    made = generate(
+        seed,
+        count,
+        scenes,
+        split,
+        random_episodes=random_episodes,
+        on_refused=lambda task, why: None if as_json else say(f"     refused {task.id}: {why}"),
+    )
+    rows = []
+    for one in made:
+        task, path = one.task, write_task(folder, one.task)
+        rows.append(
+            {
+                "id": task.id,
+                "file": str(path),
+                "prompt": task.prompt,
+                "scenes": list(task.scenes),
+                "computed": asdict(task.computed),
+                "random": one.random,
+            }
+        )
+        if not as_json:
+            level = f"C-D {task.computed.total:>2} {task.scenes[0]}"
+            say(f"ok   {path} {level} random {one.random:.2f}: {task.prompt}")
+    if as_json:
+        put_json({"seed": seed, "split": split, "tasks": rows})
 
 
 def _say_proof(proof: Proof) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -47,3 +48,28 @@ def check(
     from adamo_vh.cli.tasks import check
 
     check(file, scene, random, as_json=json)
+
+
+@tasks_app.command("generate")
+def generate(
+    seed: Annotated[int, typer.Option(help="Of the draws; the same gives the same tasks.")] = 0,
+    count: Annotated[int, typer.Option(help="How many tasks: 1 to 1000.")] = 20,
+    scene: Annotated[
+        list[str] | None,
+        typer.Option(help="Scene or scene file; may be repeated; all built-in ones by default."),
+    ] = None,
+    split: Annotated[
+        str, typer.Option(help="dev to tune on, or test; no task is in both.")
+    ] = "dev",
+    random: Annotated[
+        int, typer.Option(min=1, max=1000, help="Episodes by lot that each task must stand.")
+    ] = 20,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the files; tasks/SPLIT-SEED by default.")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Make new tasks of C-D levels 1 to 20 from templates, each proved as check does."""
+    from adamo_vh.cli.tasks import generate
+
+    generate(seed, count, scene or (), split, random, out, as_json=json)
