@@ -34,7 +34,7 @@ _LOOK_WAY = re.compile(
 )
 _LOOK_OUT = re.compile(r"(?:look|gaze|stare|peer) (?:out|through|outside)\b.*")
 _RETURN = re.compile(
-    r"(?:(?:go|walk|come|step|head|move|get|run) back|return|come home|go home)"
+    r"(?:(?:go|walk|come|head|move|get|run) back|return|come home|go home)"
     r"(?: (?:here|again|please|now|to me|home|to the start|to your start|to where you (?:were|"
     r"started|stood|came from|began)|where you (?:were|started|stood|came from|began)|to your "
     r"(?:old |first )?(?:place|position|spot|starting (?:point|position))|to the beginning|"
@@ -65,6 +65,11 @@ _REFUSED = (
     (_LOOK_OUT, "I cannot tell where a window is"),
     (_SWITCH, "I cannot switch, light, aim or turn things"),
 )
+_STEPS = re.compile(r"(?:one|two|three|four|five|a few|a) steps?\b")
+_DEGREES = re.compile(
+    r"(?:turn|rotate|spin|look)(?: (?:around|round))?(?: (?:to the )?(?P<way>left|right))?(?: by)? "
+    r"(?P<angle>\d{1,3}) ?(?:degrees?|\u00b0)(?: (?:to the )?(?P<side>left|right))?"
+)
 _STEP_M = 0.6
 _COUNT_WORDS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "a": 1, "few": 3}
 
@@ -79,17 +84,39 @@ def read_act(plain: str, before: tuple[str, ...]) -> Plan | None:
     for refused, why in _REFUSED:
         if refused.fullmatch(plain):
             return Plan(problem=f"'{plain}' ({why})")
+    if way := read_way(plain):
+        return way
+    if match := _LOOK.fullmatch(plain):
+        return _towards("look", match[1], before)
+    if match := _WALK_TO.fullmatch(plain):
+        return _towards("walk", match[1], before)
+    return None
+
+
+def read_way(plain: str) -> Plan | None:
+    """A turn or a walk some way, told without any thing; None if the words are none.
+
+    Args:
+        plain: Lower case, one part of a sentence.
+    """
+    plain = f"take {plain}" if _STEPS.match(plain) else plain
+    if match := _DEGREES.fullmatch(plain):
+        return _turned(plain, int(match["angle"]), match["way"] or match["side"] or "right")
     if _RETURN.fullmatch(plain):
         return Plan(acts=(Act("walk", direction="start", text="back"),))
     if match := _LOOK_WAY.fullmatch(plain):
         return Plan(acts=(_turn(plain, match[1]),))
     if match := _WALK_WAY.fullmatch(with_lengths(plain)):
         return Plan(acts=(_stride(match),))
-    if match := _LOOK.fullmatch(plain):
-        return _towards("look", match[1], before)
-    if match := _WALK_TO.fullmatch(plain):
-        return _towards("walk", match[1], before)
     return None
+
+
+def _turned(plain: str, degrees: int, way: str) -> Plan:
+    if degrees == 180:
+        return Plan(acts=(Act("look", direction="back", text=plain),))
+    if degrees != 90:
+        return Plan(problem=f"'{plain}' (I turn by 90 or 180 degrees)")
+    return Plan(acts=(Act("look", direction=way, text=plain),))
 
 
 def _turn(plain: str, way: str) -> Act:

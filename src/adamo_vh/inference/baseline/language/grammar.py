@@ -17,13 +17,8 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TypeVar
 
-from adamo_vh.inference.baseline.language.phrases import (
-    Cursor,
-    NotUnderstood,
-    left_out,
-    noun_phrase,
-    starts_phrase,
-)
+from adamo_vh.inference.baseline.language.cursor import Cursor, NotUnderstood
+from adamo_vh.inference.baseline.language.phrases import left_out, noun_phrase, starts_phrase
 from adamo_vh.inference.baseline.language.places import (
     BREAKS,
     PLACES,
@@ -32,7 +27,7 @@ from adamo_vh.inference.baseline.language.places import (
     _target_place,
     read_spot,
 )
-from adamo_vh.inference.baseline.language.plan import Description, Goal, Plan, Relation
+from adamo_vh.inference.baseline.language.plan import SIDES, Description, Goal, Plan, Relation
 from adamo_vh.inference.baseline.language.referring import TOGETHER, Place, Reading, resolved_other
 from adamo_vh.inference.baseline.language.rephrasing import rephrased
 from adamo_vh.inference.baseline.language.words import Kind, Token, tokenize
@@ -52,6 +47,10 @@ _LET_GO = (
     "leave",
 )
 
+_SOURCES = (Kind.SIDE, Kind.BETWEEN, Kind.UNDER, Kind.FAR, Kind.EDGE)
+"""Places that tell, behind "pick the plate", which plate is meant."""
+_KNOWN = ("the", "this", "that", "these", "those", "both")
+"""Words before a noun that point at what was named before."""
 _EVERYTHING = Description("everything", every=True)
 
 
@@ -71,7 +70,7 @@ def wishes(instruction: str, before: tuple[str, ...] = ()) -> Plan:
     if unknown:
         return Plan(problem="'" + "', '".join(dict.fromkeys(unknown)) + "'")
     cursor = Cursor(tokens)
-    reading = Reading(last=_spoken_of(before))
+    reading = Reading(earlier=_spoken_of(before))
     try:
         while cursor.peek() is not None:
             if not cursor.accept(*BREAKS):
@@ -83,7 +82,7 @@ def wishes(instruction: str, before: tuple[str, ...] = ()) -> Plan:
 
 
 def _spoken_of(tags: Sequence[str]) -> list[Description]:
-    return [Description(tag, ids=(tag.lower(),)) for tag in tags[:1]]
+    return [Description(tag, ids=(tag.lower(),)) for tag in reversed(tags)]
 
 
 def read_things(text: str, before: tuple[str, ...] = ()) -> list[Description] | None:
@@ -112,7 +111,7 @@ def _whole(
         return None
     cursor = Cursor(tokens)
     try:
-        found = reader(cursor, Reading(last=_spoken_of(before)))
+        found = reader(cursor, Reading(earlier=_spoken_of(before)))
     except (NotUnderstood, IndexError):
         return None
     while cursor.accept(Kind.THEN, Kind.COMMA):
@@ -147,8 +146,8 @@ def _place_first(cursor: Cursor, reading: Reading) -> None:
     cursor.rewind(mark)
     while cursor.accept(Kind.COMMA, Kind.THEN):
         pass
-    if cursor.peek() in (None, *VERBS[:2]) and (meant := reading.waiting or reading.last):
-        reading.put(list(meant), place)  # "put it on the floor, then on the table"
+    if cursor.peek() in (None, *VERBS[:2]) and (meant := reading.spoken_of()):
+        reading.put(meant, place)  # "put it on the floor, then on the table"
         return
     if not cursor.accept(Kind.PUT, Kind.BRING) and not starts_phrase(cursor):
         raise cursor.fail("I expected a verb like 'put'")
@@ -179,9 +178,9 @@ def _verb_clause(spoken: Token, cursor: Cursor, reading: Reading) -> None:
         if starts_phrase(cursor) or cursor.peek() is Kind.PRONOUN:
             reading.put(_things(cursor, reading), place)
         else:  # "pick the plate and put on the floor"
-            reading.put(reading.waiting or reading.last, place)
+            reading.put(reading.spoken_of(), place)
         return
-    things = _things(cursor, reading)
+    things = _things(cursor, reading, verb is Kind.TAKE)
     if verb is Kind.FIND:
         reading.last = things
         return
@@ -251,6 +250,10 @@ def _further_pairs(cursor: Cursor, reading: Reading) -> None:
             if _is_topic(cursor):  # "... and the cup, put it on the table"
                 cursor.rewind(mark)
                 return
+            if reading.place.anchor and cursor.peek() is None and cursor.bare_and(mark):
+                raise NotUnderstood(
+                    f"'{reading.place.anchor.text} and {things[0].text}' (which of the two?)"
+                )
             reading.put(things, reading.place)  # "... and then the plate"
         else:
             raise cursor.fail("where to put it?")
@@ -267,18 +270,35 @@ def _is_topic(cursor: Cursor) -> bool:
 
 def _with_source(cursor: Cursor, reading: Reading, things: list[Description]) -> list[Description]:
     """Behind "pick the plate": a place says where the plate is now."""
-    if cursor.peek() not in (Kind.ON, Kind.NEAR, Kind.IN):
+    if cursor.peek() not in (Kind.ON, Kind.NEAR, Kind.IN, *_SOURCES):
         return things
+    if cursor.peek() in (Kind.ON, Kind.IN) and cursor.peek(1) is Kind.ROOM:
+        cursor.next()
+        cursor.next()
+        return things
+    mark = cursor.mark()
     place = read_spot(cursor, reading)
-    if place.relation is Relation.FLOOR:
-        return [replace(t, source=(Relation.FLOOR, ())) for t in things]
-    if place.relation is Relation.NEAR and place.anchor and place.anchor.classes:
-        return [replace(t, source=(Relation.NEAR, place.anchor.classes)) for t in things]
-    return things
+    source: tuple[Relation, tuple[str, ...]]
+    if place.relation is Relation.FLOOR and place.anchor is None:
+        source = (Relation.FLOOR, ())
+    elif place.relation is Relation.SURFACE:
+        source = (Relation.SURFACE, (place.furniture,))
+    elif place.relation in (Relation.NEAR, *SIDES) and place.anchor and place.anchor.classes:
+        source = (place.relation, place.anchor.classes)
+    else:
+        cursor.rewind(mark)
+        raise cursor.fail("I cannot tell things apart by that place")
+    return [replace(t, source=source) for t in things]
 
 
-def _things(cursor: Cursor, reading: Reading) -> list[Description]:
-    """A list of noun phrases, or a pronoun."""
+def _things(cursor: Cursor, reading: Reading, taken: bool = False) -> list[Description]:
+    """A list of noun phrases, or a pronoun.
+
+    Args:
+        cursor: At the first word.
+        reading: What was read before.
+        taken: Behind a verb like "pick", where a place tells which thing is meant.
+    """
     if token := cursor.accept(Kind.PRONOUN):
         if meant := reading.meant(token):
             reading.pointed = meant
@@ -292,9 +312,9 @@ def _things(cursor: Cursor, reading: Reading) -> list[Description]:
         cursor.next()
         if meant := list(reading.waiting or reading.last):
             return meant
-    if meant_again := _repeated(cursor, reading):
+    if meant_again := _repeated(cursor, reading, taken):
         return meant_again
-    things = [noun_phrase(cursor)]
+    things = [noun_phrase(cursor, taken)]
     while cursor.peek() in (Kind.COMMA, Kind.AND):
         mark = cursor.mark()
         while cursor.accept(Kind.COMMA, Kind.AND):
@@ -314,14 +334,20 @@ def _things(cursor: Cursor, reading: Reading) -> list[Description]:
     return [resolved_other(thing, reading) for thing in things]
 
 
-def _repeated(cursor: Cursor, reading: Reading) -> list[Description]:
+def _repeated(cursor: Cursor, reading: Reading, taken: bool) -> list[Description]:
     """Read "these objects", "the two items", "the object": what was taken, by a plain noun."""
     group = list(reading.waiting or reading.last)
     mark = cursor.mark()
     while cursor.accept(Kind.DET, Kind.EVERY, Kind.COUNT, Kind.OF):
         pass
+    known = any(word in _KNOWN for word in cursor.words_since(mark).split())
+    if not group and known:  # of what was spoken of before, as many as the noun says
+        group = reading.earlier
+        several = cursor.ahead().endswith("s")
+        group = group if several is (len(group) > 1) else [] if several else group[-1:]
     noun = cursor.accept(Kind.OBJECT)
-    if group and noun and cursor.peek() in (*PLACES, None):
+    follows = (None, Kind.TO, *BREAKS) if taken else (*PLACES, None)
+    if group and noun and cursor.peek() in follows:
         return group
     cursor.rewind(mark)
     return []

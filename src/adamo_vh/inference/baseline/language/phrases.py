@@ -4,11 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from adamo_vh.inference.baseline.language.cursor import Cursor
 from adamo_vh.inference.baseline.language.plan import Description, Relation, Size
 from adamo_vh.inference.baseline.language.words import Kind, Token
 
 _BEFORE_NOUN = frozenset(
-    (Kind.DET, Kind.EVERY, Kind.COUNT, Kind.COLOUR, Kind.SHAPE, Kind.GLASSY, Kind.SIZE, Kind.OTHER)
+    (
+        Kind.DET,
+        Kind.EVERY,
+        Kind.COUNT,
+        Kind.COLOUR,
+        Kind.SHAPE,
+        Kind.GLASSY,
+        Kind.SIZE,
+        Kind.OTHER,
+        Kind.NEAREST,
+    )
 )
 _STARTERS = _BEFORE_NOUN | {Kind.CLASS, Kind.OBJECT, Kind.ID, Kind.TAGGED, Kind.LABEL}
 
@@ -21,55 +32,9 @@ _PLURAL_NOUNS = (
 )
 
 
+MEASURED = (Size.NEAREST, Size.FARTHEST)
+FARTHEST = ("farthest", "furthest", "most distant", "remotest")
 _SPARED = {"but one": 1, "but two": 2, "but three": 3}
-
-
-class NotUnderstood(Exception):  # noqa: N818 - a control signal of the parser, never seen outside
-    """A part of the instruction has no meaning here."""
-
-
-class Cursor:
-    """A position in a list of symbols; filler is skipped."""
-
-    def __init__(self, tokens: list[Token]) -> None:
-        self._tokens = [token for token in tokens if token.kind is not Kind.SKIP]
-        self._at = 0
-
-    def peek(self, ahead: int = 0) -> Kind | None:
-        """Kind of the next symbol, None at the end."""
-        at = self._at + ahead
-        return self._tokens[at].kind if at < len(self._tokens) else None
-
-    def next(self) -> Token:
-        """Consume a symbol."""
-        self._at += 1
-        return self._tokens[self._at - 1]
-
-    def accept(self, *kinds: Kind) -> Token | None:
-        """Consume the next symbol if it is of one of these kinds."""
-        return self.next() if self.peek() in kinds else None
-
-    def mark(self) -> int:
-        """The position, for `rewind`."""
-        return self._at
-
-    def rewind(self, mark: int) -> None:
-        """Go back to a marked position."""
-        self._at = mark
-
-    def ahead(self) -> str:
-        """The words of the next symbol; empty at the end."""
-        return self._tokens[self._at].text if self._at < len(self._tokens) else ""
-
-    def words_since(self, mark: int) -> str:
-        """The words between a mark and here."""
-        return " ".join(token.text for token in self._tokens[mark : self._at])
-
-    def fail(self, why: str = "") -> NotUnderstood:
-        """An exception that quotes the words ahead."""
-        ahead = [token.text for token in self._tokens[self._at : self._at + 4]]
-        quoted = f"'{' '.join(ahead)}'" if ahead else "the end of the sentence"
-        return NotUnderstood(f"{quoted}{f' ({why})' if why else ''}")
 
 
 def _is_plural(token: Token) -> bool:
@@ -101,6 +66,7 @@ class _Draft:
     generic: bool = False
     plural: bool = False
     source: tuple[Relation, tuple[str, ...]] | None = None
+    measured_from: tuple[str, ...] = ()
 
     def narrow(self, value: str) -> None:
         """Add what a class word may mean: of two, what both can, or else the last, the head."""
@@ -112,6 +78,7 @@ class _Draft:
         return bool(
             self.ids or self.classes or self.colours or self.part_colours or self.shapes
             or self.transparent or self.label or self.size or self.every or self.other
+            or (self.count and self.plural)
         )  # fmt: skip
 
     def finish(self, text: str) -> Description:
@@ -133,6 +100,7 @@ class _Draft:
             every=self.every or (self.plural and (self.count or 0) > 1),
             count=self.count if self.plural else None,
             source=self.source,
+            measured_from=self.measured_from,
         )
 
 
@@ -141,8 +109,12 @@ def starts_phrase(cursor: Cursor) -> bool:
     return cursor.peek() in _STARTERS
 
 
-def noun_phrase(cursor: Cursor) -> Description:
+def noun_phrase(cursor: Cursor, placed: bool = False) -> Description:
     """Read a noun phrase.
+
+    Args:
+        cursor: At its first word.
+        placed: Whether a place behind it may tell which thing is meant.
 
     Raises:
         NotUnderstood: Here begins none, or it says nothing that tells things apart.
@@ -158,7 +130,7 @@ def noun_phrase(cursor: Cursor) -> Description:
     if not draft.says_something() and not draft.generic:
         raise cursor.fail("I expected a thing here")
     text = cursor.words_since(begin)
-    if not draft.says_something():
+    if not draft.says_something() and not (placed and cursor.peek() in (Kind.NEAR, Kind.SIDE)):
         cursor.rewind(begin)
         raise cursor.fail("this could be any object")
     return draft.finish(text)
@@ -191,6 +163,8 @@ def _adjective(token: Token, draft: _Draft) -> None:
         case Kind.SIZE:
             size, _, rank = token.value.partition(" ")
             draft.size, draft.rank = Size(size), int(rank or 1)
+        case Kind.NEAREST:
+            draft.size = Size.NEAREST
         case Kind.OTHER:
             draft.other = True
         case Kind.DET:
@@ -220,7 +194,7 @@ def _noun(cursor: Cursor, draft: _Draft) -> bool:
 def _after_noun(cursor: Cursor, draft: _Draft) -> bool:
     """One further remark behind the noun; False if there is none."""
     mark = cursor.mark()
-    readers = (_except, _id, _of, _location, _being, _having, _text)
+    readers = (_except, _id, _of, _nearest, _location, _being, _having, _text)
     for reader in readers:
         if reader(cursor, draft):
             return True
@@ -311,12 +285,34 @@ def _location(cursor: Cursor, draft: _Draft) -> bool:
     if cursor.accept(Kind.FLOOR):
         draft.source = (Relation.FLOOR, ())
         return True
-    if cursor.accept(Kind.FURNITURE, Kind.ROOM):
+    if cursor.accept(Kind.ROOM):
+        return True
+    if furniture := cursor.accept(Kind.FURNITURE):
+        draft.source = (Relation.SURFACE, (furniture.text,))
         return True
     if word.kind is Kind.NEAR and (token := cursor.accept(Kind.CLASS)):
         draft.source = (Relation.NEAR, tuple(token.value.split()))
         return True
     return False
+
+
+def _nearest(cursor: Cursor, draft: _Draft) -> bool:
+    """Read "(that is) closest to the plate", "farthest from you"."""
+    cursor.accept(Kind.THAT)
+    cursor.accept(Kind.BE)
+    while cursor.accept(Kind.DET):
+        pass
+    far = cursor.peek() is Kind.SIZE and cursor.ahead() in FARTHEST
+    if far or cursor.peek() is Kind.NEAREST:
+        _adjective(cursor.next(), draft)
+    elif draft.size not in MEASURED or cursor.peek() not in (Kind.TO, Kind.FROM):
+        return False
+    if cursor.accept(Kind.TO, Kind.FROM):
+        while cursor.accept(Kind.DET):
+            pass
+        if token := cursor.accept(Kind.CLASS):
+            draft.measured_from = tuple(token.value.split())
+    return True
 
 
 def _being(cursor: Cursor, draft: _Draft) -> bool:

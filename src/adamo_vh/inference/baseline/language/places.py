@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from adamo_vh.inference.baseline.language.phrases import (
-    Cursor,
-    NotUnderstood,
-    noun_phrase,
-)
+from adamo_vh.inference.baseline.language.cursor import Cursor, NotUnderstood
+from adamo_vh.inference.baseline.language.phrases import noun_phrase
 from adamo_vh.inference.baseline.language.plan import Description, Relation
 from adamo_vh.inference.baseline.language.referring import TOGETHER, Place, Reading, resolved_other
 from adamo_vh.inference.baseline.language.words import Kind
@@ -166,6 +163,8 @@ def _target_place(cursor: Cursor, preposition: Kind, reading: Reading) -> Place:
     mark = cursor.mark()
     while cursor.accept(Kind.DET, Kind.COUNT, Kind.ON, Kind.IN):
         pass
+    if "another" in cursor.words_since(mark) and cursor.peek() is Kind.FURNITURE:
+        raise cursor.fail("I cannot tell one from another")
     if preposition is not Kind.NEAR and cursor.accept(Kind.NEAR):  # "to beside the plate"
         preposition, mark = Kind.NEAR, cursor.mark()
     if place := _corner(cursor) or _floor(cursor):

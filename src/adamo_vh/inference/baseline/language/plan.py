@@ -48,6 +48,8 @@ class Size(StrEnum):
     LARGEST = "largest"
     TALLEST = "tallest"
     SHORTEST = "shortest"
+    NEAREST = "nearest"
+    FARTHEST = "farthest"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +80,9 @@ class Description:
     count: int | None = None
     """How many, if said ("both", "two")."""
     source: tuple[Relation, tuple[str, ...]] | None = None
-    """Where the thing is now: on the floor, or near one of some classes."""
+    """Where the thing is now: on the floor, on furniture, near or beside one of some classes."""
+    measured_from: tuple[str, ...] = ()
+    """Classes of what is to be nearest to, or farthest from; empty for the body."""
     other: bool = False
     """Not the one that was meant before."""
     definite: bool = False
@@ -160,6 +164,9 @@ class Ask(StrEnum):
     """Whether a thing has a property or is at a place."""
     SIZE = "size"
     DISTANCE = "distance"
+    """How far a thing is from the body, or from another thing."""
+    STAND = "stand"
+    """Where the body stands."""
     HELP = "help"
 
 

@@ -14,6 +14,7 @@ _POLITE = re.compile(
     r"(?: me)?[, ]*"
 )
 _NOUN = r"(?:objects?|things?|items?|one|ones|stuff)"
+_MORE = r"smaller|bigger|larger|taller|shorter"
 _TAIL = (
     r"(?: (?:here|there|now|in the room|in this room|around|please|right now|at the moment|"
     r"in total|in all|altogether|currently|then|again|do you see|can you see|do you know of|"
@@ -29,12 +30,15 @@ _RULES: tuple[tuple[str, Ask], ...] = (
      r"(?: in your hands?)?|is your hand (?:empty|free|full)|(?:are|is) your hands? "
      r"(?:empty|free|full)", Ask.HELD),
     (r"(?:what can you do|what are you able to do|help|what do you (?:do|understand)|"
-     r"who are you|what are you|how can you help(?: me)?|what should i (?:say|ask))", Ask.HELP),
+     r"who are you|what are you|what is your name|how can you help(?: me)?|"
+     r"what should i (?:say|ask))", Ask.HELP),
+    (r"where (?:are|do) you(?: stand| now)*|(?:what is )?your (?:position|place)", Ask.STAND),
     (r"(?:what|which) colou?r (?:is|are|has|have|does) (?P<thing>.+?)(?: have)?", Ask.COLOUR),
     (r"(?:the )?colou?r of (?P<thing>.+)|what is the colou?r of (?P<thing2>.+)", Ask.COLOUR),
     (r"(?:what|which) colou?rs? (?P<thing>(?:the |a ).+?) (?:is|are|has|have)", Ask.COLOUR),
-    (rf"how many (?P<thing>.+?)(?: are| is| lie| stand| rest)?(?: there)? (?P<place>(?:on|in|under|"
-     rf"near|next to|beside|left of|to the|between|behind) .+?){_TAIL}", Ask.COUNT),
+    (rf"(?:how many|count) (?P<thing>.+?)(?: are| is| lie| stand| rest)?(?: there)? "
+     rf"(?P<place>(?:on|in|under|near|next to|beside|left of|to the|between|behind) .+?){_TAIL}",
+     Ask.COUNT),
     (rf"(?:count|how many|the number of) (?P<thing>.+?)(?: are there| is there| do you (?:see|know|"
      rf"know of)| can you see| are| did you see| exist)?{_TAIL}", Ask.COUNT),
     (r"where (?:is|are|did you (?:put|leave|see)|do you see|can i find|has|have|does|lies?|stands?|"
@@ -53,8 +57,13 @@ _RULES: tuple[tuple[str, Ask], ...] = (
      rf"to|beside|left of|right of|to the|between|behind|close to|by|in front of) .+?){_TAIL}",
      Ask.AT),
     (rf"(?:which|what)(?: of them)?(?: {_NOUN})? (?:is|are) (?P<thing>(?:the )?(?:second |third )?"
-     r"(?:smallest|largest|biggest|tallest|shortest|highest|tiniest|littlest|greatest|lowest).*?)"
+     r"(?:smallest|largest|biggest|tallest|shortest|highest|tiniest|littlest|greatest|lowest|"
+     r"nearest|closest|farthest|furthest).*?)"
      rf"{_TAIL}", Ask.WHICH),
+    (rf"(?:which|what)(?: one| {_NOUN})? (?:is|are) (?:the )?(?P<size>{_MORE}) (?:of |between )?"
+     r"(?P<one>.+?) (?:or|and) (?P<other>.+)", Ask.WHICH),
+    (rf"which (?:of )?(?P<group>(?:the |these |those )?[\w ]+?) (?:is|are) (?:the )?"
+     rf"(?P<size>{_MORE})(?: one)?", Ask.WHICH),
     (rf"(?:which|what)(?: of them)?(?: (?P<noun>{_NOUN}|\w+))? (?:is|are|looks?) "
      rf"(?P<quality>(?!there\b)\w[\w ]*?){_TAIL}", Ask.EXISTS),
     (rf"(?:which|what) (?P<thing>\w.*?) (?:are|is|do you see|can you see|have you seen)(?: there)?"
@@ -71,6 +80,9 @@ _RULES: tuple[tuple[str, Ask], ...] = (
      rf"(?P<thing>.+?){_TAIL}", Ask.EXISTS),
     (r"do you (?:have|hold) (?P<thing>.+?)(?: in your hand)?|are you (?:holding|carrying) "
      r"(?P<thing2>.+)", Ask.IS),
+    (r"(?:how (?:far|far away|distant|near|close)|what) is (?:the distance (?:from|between) )?"
+     r"(?P<thing>.+?)(?: away)? (?:from|to|and) (?P<seat>(?!you\b|here\b|me\b|your\b).+)",
+     Ask.DISTANCE),
     (r"how (?:far|far away|distant|near|close) (?:is|are) (?P<thing>.+?)(?: away|"
      r" from (?:you|here)|"
      r" to you)*", Ask.DISTANCE),
@@ -91,6 +103,7 @@ _EXISTS = re.compile(
 _HELD = re.compile(r"^you (?:hold|are holding|have|carry|are carrying) (?P<no>no )?(?P<thing>.+?)"
                    r"(?: in your hand)?$")  # fmt: skip
 _BARE = Description("")
+_THAN = re.compile(rf"(?P<size>{_MORE}) than (?P<other>.+)")
 
 
 def read_question(text: str, before: tuple[str, ...] = ()) -> Question | None:
@@ -119,6 +132,10 @@ def _question(ask: Ask, match: re.Match[str], before: tuple[str, ...]) -> Questi
         things = read_things(f"all the {groups['quality']} {noun}s", before)
         known = things and len(things) == 1 and (things[0].by_looks or things[0].size)
         return Question(ask, things[0]) if things and known else None
+    if groups.get("size"):
+        return _comparison(groups, before)
+    if groups.get("seat"):
+        return _distance(groups, before)
     spoken = next((groups[name] for name in ("thing", "thing2", "thing3") if groups.get(name)), "")
     place = None
     if groups.get("place"):
@@ -127,6 +144,8 @@ def _question(ask: Ask, match: re.Match[str], before: tuple[str, ...]) -> Questi
             return None
     if not spoken:
         return Question(ask, place=place)
+    if ask is Ask.WHICH and spoken.split()[0] != "the":
+        spoken = f"the object {spoken}" if " to " in spoken or " from " in spoken else spoken
     things = read_things(spoken, before) or _any_thing(spoken)
     if not things or len(things) > 1:
         return None
@@ -134,6 +153,42 @@ def _question(ask: Ask, match: re.Match[str], before: tuple[str, ...]) -> Questi
     if ask is Ask.IS:
         return Question(Ask.IS, thing, Goal(_BARE))
     return Question(ask, thing, place)
+
+
+def _comparison(groups: dict[str, str], before: tuple[str, ...]) -> Question | None:
+    """Read "which is bigger of the cup or the glass", "which of the locks is smaller"."""
+    size = groups["size"]
+    if groups.get("group"):
+        group = groups["group"]
+        things = read_things(f"the {size} of {group}", before) or read_things(
+            f"the {size} {group}", before
+        )
+        ok = things and len(things) == 1 and things[0].size and things[0].classes
+        return Question(Ask.WHICH, things[0]) if things and ok else None
+    compared = _compared(size, groups["one"], groups["other"], before)
+    return Question(Ask.WHICH, compared) if compared else None
+
+
+def _compared(size: str, one: str, other: str, before: tuple[str, ...]) -> Description | None:
+    """The larger, smaller, taller ... of two things of different kinds."""
+    both = [read_things(words, before) for words in (one, other)]
+    extreme = read_things(f"the {size} object", before)
+    if not extreme or any(not things or len(things) > 1 for things in both):
+        return None
+    kinds = [things[0].classes[:1] for things in both if things]
+    if not all(kinds) or kinds[0] == kinds[1]:
+        return None
+    words = f"the {size} of {one} and {other}"
+    return Description(words, classes=kinds[0] + kinds[1], size=extreme[0].size)
+
+
+def _distance(groups: dict[str, str], before: tuple[str, ...]) -> Question | None:
+    """Read "how far is the cup from the plate"."""
+    both = [read_things(groups[name], before) for name in ("thing", "seat")]
+    if any(not things or len(things) > 1 for things in both):
+        return None
+    (thing,), (anchor,) = (things or [] for things in both)
+    return Question(Ask.DISTANCE, thing, Goal(_BARE, Relation.NEAR, anchor))
 
 
 def _any_thing(spoken: str) -> list[Description]:
@@ -180,6 +235,11 @@ def _predicate(thing: str, what: str, before: tuple[str, ...], negated: bool) ->
         return Question(Ask.IS, subject, Goal(_BARE), negated=negated)
     if what in ("here", "there", "in the room", "visible", "in view", "in sight"):
         return Question(Ask.EXISTS, subject, negated=negated)
+    if (than := _THAN.fullmatch(what)) and not subject.every:
+        compared = _compared(than["size"], thing, than["other"], before)
+        if compared is None:
+            return None
+        return Question(Ask.IS, subject, quality=replace(compared, text=what), negated=negated)
     if place := read_place(re.sub(r"^(?:lying|standing|resting|placed) ", "", what), before):
         return Question(Ask.IS, subject, place, negated=negated)
     quality = (

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from adamo_vh.inference.baseline.language.phrases import (
-    NotUnderstood,
-)
+from adamo_vh.inference.baseline.language.cursor import NotUnderstood
 from adamo_vh.inference.baseline.language.plan import Description, Goal, Plan, Relation
 from adamo_vh.inference.baseline.language.words import Token
-from adamo_vh.inference.baseline.sight.kinds import prototypes
+from adamo_vh.inference.baseline.sight.kinds import class_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +35,8 @@ class Reading:
     """Taken, and not placed yet."""
     last: list[Description] = field(default_factory=list)
     """What "it" and "them" mean when nothing waits."""
+    earlier: list[Description] = field(default_factory=list)
+    """What they mean before the instruction named anything: what was spoken of before it."""
     place: Place | None = None
     """What "there" means."""
     before: list[Description] = field(default_factory=list)
@@ -80,8 +80,12 @@ class Reading:
 
     def meant(self, token: Token) -> list[Description]:
         """What a pronoun means."""
-        group = self.waiting or self.last
+        group = self.spoken_of()
         return group[-1:] if token.value in ("it", "this one", "that one") else list(group)
+
+    def spoken_of(self) -> list[Description]:
+        """What was named last, in this instruction or before it."""
+        return list(self.waiting or self.last or self.earlier)
 
     def plan(self) -> Plan:
         """All wishes; what was taken and not put is held."""
@@ -111,12 +115,13 @@ def _same(one: Description, other: Description) -> bool:
 
 def resolved_other(thing: Description, reading: Reading) -> Description:
     """Read "the other one" behind "the lock" as another lock."""
-    if not thing.other or not reading.last:
+    named = reading.last or reading.earlier
+    if not thing.other or not named:
         return thing
     if thing.every and not thing.classes and "other objects" in thing.text:
-        spoken = [*(goal.target for goal in reading.goals), *reading.waiting, *reading.last]
+        spoken = [*(goal.target for goal in reading.goals), *reading.waiting, *named]
         return replace(thing, but=(*thing.but, *dict.fromkeys(spoken)), other=False)
-    known = reading.last[-1]
+    known = named[-1]
     kind = thing if thing.classes else replace(thing, classes=_classes(known))
     if replace(known, text="", definite=False, count=None) == Description("", classes=kind.classes):
         return kind  # "a battery ... the other one": what was taken first is not taken again
@@ -126,5 +131,5 @@ def resolved_other(thing: Description, reading: Reading) -> Description:
 def _classes(known: Description) -> tuple[str, ...]:
     if known.classes or not known.ids:
         return known.classes
-    name = known.ids[0].rpartition("_")[0]
-    return tuple(kind for kind in prototypes() if kind.lower() == name)
+    kind = class_of(known.ids[0])
+    return (kind,) if kind else ()

@@ -52,6 +52,16 @@ _NUMBER_LEFT_OUT = re.compile(
     r"(?: of)?(?: the)?(?: (?!on\b|in\b|to\b|near\b|next\b)\w+)?"
 )
 _SPOKEN: tuple[tuple[str, str], ...] = (
+    (r"^(?:could|can|may) (?:i|we) (?:please )?(?:have|get|take|borrow) ", "get me "),
+    (r"^(?:i am|i'm) (?:still )?looking for |^i (?:can't|cannot|can not) find |"
+     r"^i(?: have|'ve)? lost (?=[^.,;!]*$)", "find "),
+    (r"\bhand ((?:the|my|that|a) [\w ]+?) over\b", r"hand over \1"),
+    (r"\b(?:what|whatever) (?:you (?:hold|are holding|have)|is)(?: in your hand)?"
+     r"(?=$|[.,;!]| and\b| on\b| in\b| next\b| back\b| down\b)(?<!^what is)", "it"),
+    (r"\b(put|place|set|lay|move|drop|leave) (?:that|this) (?=on\b|in\b|next\b|near\b|to\b|down\b|"
+     r"back\b|under\b|between\b|beside\b)", r"\1 it "),
+    (r"\b(which|what)((?: \w+)?) (is|are) (\w+er)[,:] (.+? or )", r"\1\2 \3 \4 of \5"),
+    (r"\bas far (?:away )?from (.+?) as (?:possible|you can)\b", r"far from \1"),
     (r"\bpl[sz]\b", "please"),
     (r"^(?:i|we)(?: have|'ve)? (?:just )?(?:dropped|lost|misplaced|forgot|left) "
      r"((?:my|the|our) [\w ]+?)[.,;!]+", r"find \1,"),
@@ -68,7 +78,9 @@ _SPOKEN: tuple[tuple[str, str], ...] = (
 _RULES: tuple[tuple[str, str], ...] = (
     (r"\bi'd\b", "i would"),
     (r"\b(?:possibly|perhaps|maybe)\b ?", ""),
-    (r"\bpls\b|\bplz\b", "please"),
+    (r"\b(?:something|anything) (red|orange|yellow|green|blue|purple|pink|brown|black|grey|gray|"
+     r"white|round|flat|transparent)\b", r"an \1 object"),
+    (r"\bnon[- ](\w+) (things|objects|items)", r"\2 except \1 \2"),
     (r"\bbesides (?=(?:the|a|an|my)\b)", "beside "),
     (r"^(?:i|we) (?:need|want|would like) (?=(?:the|a|an|my|that|some) [^,.;]*$)"
      r"(?!.*\b(?:on|in|next|near|to|at|beside|under|between|behind|be)\b)", "get me "),
@@ -76,7 +88,8 @@ _RULES: tuple[tuple[str, str], ...] = (
     (r"\b(?:that|those|the) ([\w ]+?) over there\b", r"the \1"),
     (r"\b(everything|anything|all|every\w*|each)\b([^.;!?]*?) (?:that|which) (?:is|are) not "
      r"(?:an? |the )?(?=\w)", r"\1\2 except "),
-    (r"\b(?:all |everything )?else\b|\b(?:all )?the rest\b(?: of (?:them|the \w+|it))?",
+    (r"(?<!where )(?<!or )(?<!nothing )\b(?:all |everything )?else\b|"
+     r"\b(?:all )?the rest\b(?: of (?:them|the \w+|it))?",
      "all other objects"),
     (r"\bnothing (?:but|except|other than) ", ""),
     (r"\bthe (\w[\w ]*?)\. (?=(?:on|in|next to|near|under|behind) )", r"the \1 "),

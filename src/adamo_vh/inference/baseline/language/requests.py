@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 from functools import lru_cache
 
-from adamo_vh.inference.baseline.language.acts import read_act
+from adamo_vh.inference.baseline.language.acts import read_act, read_way
 from adamo_vh.inference.baseline.language.grammar import read_things, wishes
 from adamo_vh.inference.baseline.language.plan import Description, Plan
 from adamo_vh.inference.baseline.language.questions import read_question, read_statement
@@ -93,9 +93,12 @@ def understand(instruction: str, before: tuple[str, ...] = (), former: str = "")
 
 def _gone_on_with(former: str, text: str, before: tuple[str, ...]) -> Plan | None:
     """Read "and now the cup" as the former wish for another thing."""
-    begin = r"^(?:(?:and|now|then|also|next|what about|how about|the same for)\b[, ]*)+"
+    begin = (
+        r"^(?:(?:and|now|then|also|next|what about|how about|the same for|no|not that one|sorry|"
+        r"actually|i meant?|rather)\b[, ]*)+"
+    )
     words = re.sub(begin, "", text).strip(" .!?")
-    things = read_things(re.sub(r"[, ]+(?:too|as well|please|also)$", "", words), before)
+    things = read_things(re.sub(r"[, ]+(?:too|as well|please|also|instead)$", "", words), before)
     goals = wishes(former.lower(), ()).goals if things else ()
     if not things or not goals:
         return None
@@ -114,7 +117,7 @@ def _read(text: str, before: tuple[str, ...]) -> Plan:
     text = text.strip(" .!")
     if number := number_left_out(text):
         return Plan(problem=f"'{number}' (say which, e.g. 'all but the red one')")
-    special = _pause(text) or _conditional(text, before)
+    special = _pause(text) or read_way(_unadorned(text)) or _conditional(text, before)
     if special:
         return special
     if not _asks(text) and not _NOT.match(text):

@@ -215,7 +215,8 @@ _PHRASES: dict[Kind, str] = {
     "one by one|one after another|one after the other|immediately|straight|again|once more|"
     "once again|as well as possible|for us|softly|neatly|exactly there|and so on|at once|"
     "right away|right now|if you like|either|currently|at the moment|at present|still|already|"
-    "free|empty|available|a free spot|well|nicely|proceed to|continue to|go ahead and|a bit|very|"
+    "free|available|a free spot|a free place|an empty spot|an empty place|"
+    "well|nicely|proceed to|continue to|go ahead and|a bit|very|"
     "respectively|that you can find|that you find|you can find|you can see|that you can see|"
     "you see|you find|in the room|of the room|from the room|in this room|around|present|visible|"
     "dear|friend",
@@ -296,6 +297,7 @@ _VALUED: dict[Kind, dict[str, str]] = {
         "most voluminous|huge|hugest",
         "tallest": "tallest|taller|tall",
         "shortest": "shortest|shorter",
+        "farthest": "farthest|furthest|most distant|remotest",
     },
     Kind.SIDE: {
         "left": "left of|to the left of|on the left of|at the left of|on the left side of|"
@@ -323,7 +325,7 @@ _VALUED: dict[Kind, dict[str, str]] = {
 _RANKS = {"second": 2, "2nd": 2, "next": 2, "third": 3, "3rd": 3, "fourth": 4}
 
 _SHIFT_LETTERS = "@abcdefghijklmnopqrstuvwxyz"
-_WORD = re.compile(r"@(?:left|right|front|back)?\d+|[a-z]+_\d+|#?\d+|[a-z]+(?:'[a-z]+)?|[,.;:!?&]")
+_WORD = re.compile(r"@(?:left|right|front|back)?\d+|[a-z]+_\w+|#?\d+|[a-z]+(?:'[a-z]+)?|[,.;:!?&]")
 
 
 @cache
@@ -384,7 +386,7 @@ def _longest_match(words: list[str], at: int) -> tuple[Token, int]:
         way, centimetres = words[at][1:].rstrip("0123456789"), words[at].lstrip(_SHIFT_LETTERS)
         spoken = f"{centimetres} cm{f' to the {way}' if way else ''}"
         return Token(Kind.SHIFT, words[at][1:], spoken), 1
-    if re.fullmatch(r"#?\d+|[a-z]+_\d+", words[at]):
+    if re.fullmatch(r"#?\d+|[a-z]+_\w+", words[at]):
         return Token(Kind.ID, words[at].lstrip("#"), words[at]), 1
     for length in range(min(_longest(), len(words) - at), 0, -1):
         phrase = " ".join(words[at : at + length])

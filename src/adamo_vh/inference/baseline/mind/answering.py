@@ -126,6 +126,9 @@ def _left_out(goal: Goal, index: int, jobs: list[Job], memory: Memory) -> str:
 def _identity(goal: Goal, index: int, jobs: list[Job], memory: Memory, account: _Account) -> None:
     """Say which was taken where several fit, and where looks had to decide."""
     target = goal.target
+    if target.source and target.source[0] is Relation.SURFACE and jobs:
+        account.open_ended = True
+        account.doubts.append(f"I cannot tell by sight that it was on the {target.source[1][0]}.")
     if not target.ids:
         unsure = [job.tag for job in jobs if _fit(job, memory) < _SURE]
         opaque = [j.tag for j in jobs if class_of(j.tag) is None and j.tag not in unsure]
@@ -148,6 +151,8 @@ def _not_found(goal: Goal, index: int, memory: Memory) -> str:
     target = goal.target
     words = f"I found {'nothing that is' if target.every and not target.classes else 'no'} "
     words += bare(target).removeprefix("any ")
+    if target.source and target.source[0] is Relation.SURFACE:
+        words += f" on what may be a {target.source[1][0]}"
     kin = [tag for tag in memory.things if class_of(tag) in target.classes]
     if target.by_looks and kin:
         looks = [f"{t} looks {memory.looks[t]}" for t in kin if t in memory.looks]

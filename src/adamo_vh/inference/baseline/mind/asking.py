@@ -5,7 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.baseline.language.plan import SIDES, Ask, Description, Question, Relation
+from adamo_vh.inference.baseline.language.plan import (
+    SIDES,
+    Ask,
+    Description,
+    Goal,
+    Question,
+    Relation,
+    Size,
+)
 from adamo_vh.inference.baseline.language.requests import CAN
 from adamo_vh.inference.baseline.mind.beliefs import OF_CONDITION
 from adamo_vh.inference.baseline.mind.choosing import extreme
@@ -14,12 +22,13 @@ from adamo_vh.inference.baseline.mind.furniture import candidates
 from adamo_vh.inference.baseline.mind.memory import Memory, Thing
 from adamo_vh.inference.baseline.mind.searching import Stage
 from adamo_vh.inference.baseline.prompt.reading import Prompt
+from adamo_vh.inference.baseline.tags import parts_of
 
 _FITS = 0.5
 _DOES_NOT = 0.3
 _FLOOR_M = 0.06
 _BESIDE_M = 0.6
-_AT_ONCE = (Ask.HELD, Ask.HELP)
+_AT_ONCE = (Ask.HELD, Ask.HELP, Ask.STAND)
 _AFTER_A_ROUND = (Ask.AT, Ask.SEE, Ask.WHICH)
 
 
@@ -41,7 +50,8 @@ def ready(question: Question, index: int, memory: Memory, stage: Stage) -> bool:
     if not found:
         # Where all of a kind were seen from nearby, and none looks as said, there is none.
         return close and bool(question.ask is Ask.COUNT or (target and target.by_looks))
-    if question.ask is Ask.COUNT or (target and target.compares and not close):
+    compares = (target and target.compares) or (question.quality and question.quality.size)
+    if question.ask is Ask.COUNT or (compares and not close):
         return close
     if question.ask is Ask.COLOUR:
         return close or found[0] in memory.looks
@@ -86,6 +96,8 @@ def tell(question: Question, index: int, memory: Memory, prompt: Prompt, stage: 
     """
     if question.ask is Ask.HELP:
         return f"I am a set of rules in a body. {CAN}"
+    if question.ask is Ask.STAND:
+        return f"I stand at {prompt.body.position}."
     if question.ask is Ask.HELD:
         return f"I hold {memory.hand}." if memory.hand else "I hold nothing; my hand is empty."
     if question.ask is Ask.IS:
@@ -98,10 +110,10 @@ def tell(question: Question, index: int, memory: Memory, prompt: Prompt, stage: 
     found = matches(question, index, memory)
     if not found:
         return _none(question) + _unseen(stage)
-    return _about(question, found, memory, prompt)
+    return _about(question, index, found, memory, prompt)
 
 
-def _about(question: Question, found: list[str], memory: Memory, prompt: Prompt) -> str:
+def _about(question: Question, index: int, found: list[str], memory: Memory, prompt: Prompt) -> str:
     """What is asked of certain things."""
     if question.ask is Ask.EXISTS:
         seen = "; ".join(where(tag, memory) for tag in found[:6])
@@ -110,6 +122,8 @@ def _about(question: Question, found: list[str], memory: Memory, prompt: Prompt)
         return " ".join(_colour(tag, memory) for tag in found[:4])
     if question.ask is Ask.SIZE:
         return " ".join(_size(memory.things[t]) for t in found[:4] if t in memory.things)
+    if question.ask is Ask.DISTANCE and question.place:
+        return _apart(question, index, found[0], memory)
     if question.ask is Ask.DISTANCE:
         here = prompt.body.position
         return " ".join(
@@ -118,6 +132,15 @@ def _about(question: Question, found: list[str], memory: Memory, prompt: Prompt)
             if tag in memory.things
         )
     return ". ".join(where(tag, memory) for tag in found[:6]) + "."
+
+
+def _apart(question: Question, index: int, tag: str, memory: Memory) -> str:
+    anchor = _anchor(question, index, memory)
+    if anchor is None or tag not in memory.things:
+        other = question.place.anchor if question.place else None
+        return f"I have not seen {bare(other)}." if other else "I cannot tell."
+    apart = memory.things[tag].position.horizontal_distance(anchor.position)
+    return f"{tag} is {apart:.2f} m from {anchor.tag}."
 
 
 def verdict(question: Question, index: int, memory: Memory, prompt: Prompt) -> bool | None:
@@ -169,7 +192,10 @@ def _by_anchor(
 def _quality(question: Question, index: int, tag: str, memory: Memory) -> bool | None:
     assert question.quality is not None
     if question.quality.size:
-        return extreme(question.quality, memory.fits.get(("quality", index), {}), memory) == [tag]
+        fits = memory.fits.get(("quality", index), {})
+        if sum(fit >= _DOES_NOT for fit in fits.values()) < len(question.quality.classes):
+            return None  # what it is compared with was not seen
+        return extreme(question.quality, fits, memory) == [tag]
     fit = memory.fits.get(("quality", index), {}).get(tag)
     if fit is None or (question.quality.by_looks and tag not in memory.looks and fit > 0.05):
         return None
@@ -248,8 +274,8 @@ def _list(begin: str, tags: list[str], memory: Memory) -> str:
 
 
 def _number(tag: str) -> tuple[int, str]:
-    number = tag.rsplit("_", 1)[-1]
-    return (int(number) if number.isdigit() else 10**6, tag)
+    _, number = parts_of(tag)
+    return (int(number) if number else 10**6, tag)
 
 
 def _count(question: Question, index: int, memory: Memory, prompt: Prompt) -> str:
@@ -257,14 +283,22 @@ def _count(question: Question, index: int, memory: Memory, prompt: Prompt) -> st
     plain = replace(question.target, count=None)
     found = matches(replace(question, target=plain), index, memory)
     if question.place:
-        found = [
-            tag
-            for tag in found
-            if _holds(replace(question, quality=None), index, [tag], memory, prompt)
-        ]
+        plainly = replace(question, quality=None)
+        told = {tag: _holds(plainly, index, [tag], memory, prompt) for tag in found}
+        if None in told.values():
+            return _cannot_place(question.place, found, memory, prompt)
+        found = [tag for tag in found if told[tag]]
     if not found:
         return f"I saw none that I could tell to be {plain.text.removeprefix('the ')}."
     return f"I saw {len(found)}: {', '.join(sorted(found, key=_number))}."
+
+
+def _cannot_place(place: Goal, tags: list[str], memory: Memory, prompt: Prompt) -> str:
+    """What to say of things of which no text tells whether they are there."""
+    seen = f"I saw {len(tags)}: {', '.join(sorted(tags, key=_number))}."
+    if place.relation is Relation.SURFACE:
+        return f"{seen} {_on_furniture(place.furniture, memory, prompt)}"
+    return f"{seen} I cannot tell which of them are there."
 
 
 def _which(question: Question, index: int, memory: Memory, prompt: Prompt) -> str:
@@ -274,6 +308,8 @@ def _which(question: Question, index: int, memory: Memory, prompt: Prompt) -> st
     if not found:
         return _none(question)
     thing = memory.things[found[0]]
+    if question.target.size in (Size.NEAREST, Size.FARTHEST):
+        return f"Of what I saw, {thing.tag} is {question.target.text}; {where(thing.tag, memory)}."
     return (
         f"Of what I saw, {thing.tag} is {question.target.text}, "
         f"with a box of {thing.volume_cm3:.0f} cm3."

@@ -48,6 +48,7 @@ def recalled(prompt: Prompt, plan: Plan) -> Memory:
         memory.things[tag] = thing_of(tag, listed.position, listed.volume_cm3)
     memory.seen_m.update(prompt.told_from_m)
     _earlier(prompt, memory)
+    _stand(prompt, memory)
     for turn in prompt.turns[: len(prompt.turns) - len(turns)]:
         for event in turn.events:
             if event.name == "Drop" and event.outcome in ("done", "corrected"):
@@ -112,11 +113,15 @@ def since_whole(turns: tuple[Turn, ...]) -> tuple[Turn, ...]:
 def judge_by_text(memory: Memory, plan: Plan) -> None:
     """Say how well things fit the descriptions that tags alone decide, where that is not known."""
     everything = tuple(memory.things.values())
+    open_ = {slot for slot, _ in open_slots(plan, memory)}
     for slot, description in slots(plan):
         fits = memory.fits.setdefault(slot, {})
         for thing in everything:
-            if thing.tag not in fits and told_by_text(description, thing.tag):
-                fits[thing.tag] = degree(description, thing, None, everything)
+            # What it is near to may be seen later than the thing.
+            new = thing.tag not in fits or (description.source and slot in open_)
+            if new and told_by_text(description, thing.tag):
+                viewer = memory.began
+                fits[thing.tag] = degree(description, thing, None, everything, viewer=viewer)
 
 
 def told_by_text(description: Description, tag: str) -> bool:
@@ -187,7 +192,7 @@ def asks_for_colours(plan: Plan) -> bool:
     """Whether the colours of things are to be told, or borne out."""
     questions = [*plan.questions, *([plan.condition] if plan.condition else [])]
     return any(q.ask is Ask.COLOUR or q.quality for q in questions) or any(
-        d.colours or d.part_colours for _, d in slots(plan)
+        part.colours or part.part_colours for _, d in slots(plan) for part in (d, *d.but)
     )
 
 
@@ -286,7 +291,7 @@ def _see(prompt: Prompt, plan: Plan, memory: Memory, looked_at: Mapping[str, Sig
             thing, sight = memory.things[tag], looked_at.get(tag)
             if tag in fits and (sight is None or sight.pixels < WELL_SEEN_PX):
                 continue
-            fit = _fit(description, thing, sight, everything, beliefs[tag])
+            fit = _fit(description, thing, sight, everything, beliefs[tag], memory.began)
             # The nearest view is believed; of equally near ones, the most favourable.
             fits[tag] = fit if nearer else max(fit, fits.get(tag, 0.0))
 
@@ -310,7 +315,8 @@ def _see_closely(
     for slot, description in open_slots(plan, memory):
         if not told_by_text(description, tag):
             fits = memory.fits.setdefault(slot, {})
-            fits[tag] = _fit(description, memory.things[tag], sight, everything, beliefs)
+            thing = memory.things[tag]
+            fits[tag] = _fit(description, thing, sight, everything, beliefs, memory.began)
 
 
 def _take_for(tag: str, kind: str, memory: Memory) -> None:
@@ -327,5 +333,6 @@ def _fit(
     sight: Sight | None,
     everything: tuple[Thing, ...],
     beliefs: Beliefs,
+    viewer: Stand | None,
 ) -> float:
-    return round(degree(description, thing, sight, everything, beliefs), 2)
+    return round(degree(description, thing, sight, everything, beliefs, viewer), 2)

@@ -8,8 +8,9 @@ from functools import lru_cache
 
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.baseline.language.plan import Description, Goal, Relation, Size
-from adamo_vh.inference.baseline.mind.evidence import anchor_of
-from adamo_vh.inference.baseline.mind.memory import Memory, Thing
+from adamo_vh.inference.baseline.mind.evidence import anchor_of, side_seen
+from adamo_vh.inference.baseline.mind.furniture import heights, may_be_found
+from adamo_vh.inference.baseline.mind.memory import Memory, Stand, Thing
 from adamo_vh.inference.baseline.mind.searching import Stage
 from adamo_vh.inference.baseline.sight.kinds import (
     Beliefs,
@@ -20,7 +21,8 @@ from adamo_vh.inference.baseline.sight.kinds import (
     prototypes,
     size_of,
 )
-from adamo_vh.inference.baseline.sight.measures import Sight
+from adamo_vh.inference.baseline.sight.measures import Sight, colour_words
+from adamo_vh.inference.baseline.tags import parts_of
 
 _SURE, _LIKELY, _AT_ALL = 0.5, 0.3, 0.12
 _MEMBER = 0.5
@@ -127,14 +129,32 @@ def extreme(description: Description, fits: dict[str, float], memory: Memory) ->
     things = [memory.things[tag] for tag, fit in fits.items() if fit >= _LIKELY]
     if not things:
         return []
-    by_height = description.size in (Size.TALLEST, Size.SHORTEST)
-    ordered = sorted(things, key=lambda t: (t.height_m if by_height else t.volume_cm3, t.tag))
-    if description.size in (Size.LARGEST, Size.TALLEST):
+    ordered = sorted(things, key=lambda t: (_extent(description, t, memory), t.tag))
+    if description.size in (Size.LARGEST, Size.TALLEST, Size.FARTHEST):
         ordered.reverse()
     first = description.rank - 1
     if description.every:  # "the two largest objects"
         return [t.tag for t in ordered[: description.count or 1]]
     return [t.tag for t in ordered[first : first + 1]]
+
+
+def _extent(description: Description, thing: Thing, memory: Memory) -> float:
+    """What a superlative compares: height, distance or volume."""
+    if description.size in (Size.TALLEST, Size.SHORTEST):
+        return thing.height_m
+    if description.size not in (Size.NEAREST, Size.FARTHEST):
+        return thing.volume_cm3
+    kinds = description.measured_from
+    of_kind = [t for t in memory.things.values() if kind_of(t.tag, memory) in kinds]
+    if kinds:
+        apart = [o.position.horizontal_distance(thing.position) for o in of_kind if o != thing]
+        return min(apart, default=math.inf if description.size is Size.NEAREST else -math.inf)
+    return memory.began.position.horizontal_distance(thing.position) if memory.began else math.inf
+
+
+def kind_of(tag: str, memory: Memory) -> str | None:
+    """The class that a tag names, or what the thing seems to be by its looks."""
+    return class_of(tag) or memory.kinds.get(tag)
 
 
 def _nearness(tag: str, memory: Memory) -> float:
@@ -147,6 +167,8 @@ _FLOOR_BOTTOM_M = 0.1
 _LEFT_OUT = 0.5
 _CONTRADICTS = 0.25
 """Looks that fit less speak against what is said."""
+_MAIN = 0.6
+"""How well the colour fits that one would name first."""
 _NOT_MADE_OUT = 0.4
 WELL_SEEN_PX = 60
 _A_WORD = 3
@@ -159,6 +181,7 @@ def degree(
     sight: Sight | None,
     others: Sequence[Thing],
     beliefs: Beliefs | None = None,
+    viewer: Stand | None = None,
 ) -> float:
     """How well a thing fits a description.
 
@@ -168,19 +191,20 @@ def degree(
         sight: Its pixels, if looked at.
         others: All things known, for "from the floor" or "standing near the plate".
         beliefs: What it may be, if that was found out already.
+        viewer: Where left and right are told from.
 
     Returns:
         0 (does not fit) to 1 (fits in every respect).
     """
     if description.ids:
-        bare = thing.tag.lower().rsplit("_", 1)[-1]
-        return 1.0 if {bare, thing.tag.lower()} & set(description.ids) else 0.0
+        tag = thing.tag.lower()
+        return 1.0 if {parts_of(tag)[1] or tag, tag} & set(description.ids) else 0.0
     beliefs = beliefs or classify(thing.tag, thing.volume_cm3, sight)
     if any(degree(left, thing, sight, others, beliefs) >= _LEFT_OUT for left in description.but):
         return 0.0
     factors = _factors(description, thing, beliefs, sight)
     if description.source:
-        factors.append(_from_there(description.source, thing, others))
+        factors.append(_from_there(description.source, thing, others, viewer))
     if not factors:
         return 1.0
     if min(factors) < 0.02:
@@ -250,7 +274,8 @@ def _colour(colour: str, beliefs: Beliefs, sight: Sight | None) -> float:
     share = sight.share(colour)
     if colour in ("grey", "black", "white"):
         share = max(0.0, share - 0.25)  # shadows and highlights are on everything
-    return _updated(max(usual, 0.1), _ratio(share, 0.30))
+    fit = _updated(max(usual, 0.1), _ratio(share, 0.30))
+    return max(fit, _MAIN) if colour in colour_words(sight).split(" and ") else fit
 
 
 def _part_colour(colour: str, beliefs: Beliefs, sight: Sight | None) -> float:
@@ -302,15 +327,24 @@ def _updated(prior: float, log_ratio: float) -> float:
 
 
 def _from_there(
-    source: tuple[Relation, tuple[str, ...]], thing: Thing, others: Sequence[Thing]
+    source: tuple[Relation, tuple[str, ...]],
+    thing: Thing,
+    others: Sequence[Thing],
+    viewer: Stand | None,
 ) -> float:
     relation, classes = source
     if relation is Relation.FLOOR:
         return 1.0 if thing.bottom_z < _FLOOR_BOTTOM_M else 0.0
+    if relation is Relation.SURFACE:
+        low, high = heights(classes[0])
+        usual = low - _FLOOR_BOTTOM_M <= thing.bottom_z <= high + _FLOOR_BOTTOM_M
+        return float(usual and may_be_found(classes[0]))
     near = [
         other.position.horizontal_distance(thing.position)
         for other in others
-        if other.tag != thing.tag and class_of(other.tag) in classes
+        if other.tag != thing.tag
+        and class_of(other.tag) in classes
+        and (relation is Relation.NEAR or side_seen(thing, other, viewer) is relation)
     ]
     return 1.0 if near and min(near) < _NEAR_SOURCE_M else 0.1
 

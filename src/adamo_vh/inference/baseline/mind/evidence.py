@@ -247,7 +247,12 @@ def shifted(place: Vec3, direction: str, distance_m: float, viewer: Stand | None
 
 def side_of(thing: Thing, anchor: Thing, memory: Memory) -> Relation:
     """On which side of another thing a thing is, as seen from where the instruction was given."""
-    away, right = axes(anchor.position, memory.began)
+    return side_seen(thing, anchor, memory.began)
+
+
+def side_seen(thing: Thing, anchor: Thing, viewer: Stand | None) -> Relation:
+    """On which side of another thing a thing is for a viewer."""
+    away, right = axes(anchor.position, viewer)
     dx = thing.position.x - anchor.position.x
     dy = thing.position.y - anchor.position.y
     far, aside = dx * away[0] + dy * away[1], dx * right[0] + dy * right[1]

@@ -13,6 +13,7 @@ from typing import Any
 
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.baseline.prompt.state_text import Body, Listed, StateReader, first_point
+from adamo_vh.inference.baseline.tags import TAG
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
@@ -29,11 +30,12 @@ _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _SPAN = re.compile(rf"x from {_NUMBER} to {_NUMBER} and y from {_NUMBER} to {_NUMBER}")
 _CORNER = re.compile(rf"{_NUMBER} x {_NUMBER} m squares")
 _NEAR = re.compile(rf"within {_NUMBER} m horizontally")
-_TAG = re.compile(r"\b[A-Za-z]+_\d+\b")
+_SUBJECT = re.compile(rf"({TAG}) (?:is|are|rests|looks|has)\b|I hold ({TAG})")
 _NEW_VIEW = "New view after"
 _CLOSE_UP = "What "
 """How the words before a frame begin that is no view of the eyes."""
 _LEFT_OUT = "(An earlier picture"
+_HANDLING = ("Pick", "Drop")
 CLOSEUPS = ("Inspect", "Survey")
 
 
@@ -147,16 +149,17 @@ class Prompt:
 
     @property
     def spoken_of(self) -> tuple[str, ...]:
-        """Tags of former instructions that "it" may mean, the latest first."""
-        tags: list[str] = []
+        """What "it" and "them" may mean: tags of the last instruction with any, latest first."""
         # What the hand holds now may have been taken since: the meaning must not change on the way.
-        if held := self._held_before():
-            tags.append(held)
-        for turn in reversed(self.earlier):
-            handled = [e.tag for e in turn.events if e.name in ("Pick", "Drop") and e.tag]
-            tags += [] if not turn.answer else _TAG.findall(turn.answer)
-            tags += reversed(handled)
-        return tuple(dict.fromkeys(tags))
+        held = self._held_before()
+        tags = [held] if held else []
+        for turns in reversed(_by_instruction(self.earlier)):
+            handled = [e.tag for t in turns for e in t.events if e.name in _HANDLING and e.tag]
+            named = ["".join(found) for found in _SUBJECT.findall(turns[-1].answer)]
+            if handled or named:
+                group = list(dict.fromkeys(handled[::-1] or named))
+                return tuple(dict.fromkeys([*tags, *(group if not held or held in group else ())]))
+        return tuple(tags)
 
     def _held_before(self) -> str:
         """The tag in the hand when the instruction was given, as far as texts tell."""
@@ -172,6 +175,16 @@ class Prompt:
     def points_key(self) -> tuple[tuple[float, float, float], ...]:
         """The reference points as plain tuples."""
         return tuple((p.x, p.y, p.z) for p in self.points)
+
+
+def _by_instruction(turns: Sequence[Turn]) -> list[list[Turn]]:
+    """The turns of each former instruction; an answer ends one."""
+    groups: list[list[Turn]] = [[]]
+    for turn in turns:
+        groups[-1].append(turn)
+        if turn.answer:
+            groups.append([])
+    return [group for group in groups if group]
 
 
 @dataclass(slots=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from math import radians
 
 from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline.tags import parts_of
 
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _POINT = re.compile(rf"\(\s*{_NUMBER}\s*,\s*{_NUMBER}\s*,\s*{_NUMBER}\s*\)")
@@ -92,8 +93,11 @@ class StateReader:
 
     def things(self) -> tuple[Listed, ...]:
         """What is in the latest view, which may name things by their numbers alone."""
-        whole = {tag.rpartition("_")[2]: tag for tag in self.told}
-        tags = {whole.get(tag, tag): box for tag, box in self.in_view.items()}
+        whole = {parts_of(tag)[1]: tag for tag in self.told}
+        tags = {
+            tag if tag in self.told else whole.get(tag, tag): box
+            for tag, box in self.in_view.items()
+        }
         return tuple(
             Listed(tag, self.told[tag].position, self.told[tag].volume_cm3, box)
             for tag, box in tags.items()

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from adamo_vh.inference.baseline.sight.measures import COLOURS, Sight
 from adamo_vh.inference.baseline.sight.printed import named_kinds
+from adamo_vh.inference.baseline.tags import parts_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,8 +131,8 @@ def _by_lower_name() -> dict[str, str]:
 
 def class_of(tag: str) -> str | None:
     """The class that a semantic tag names, or None for an opaque or unknown one."""
-    name = tag.rsplit("_", 1)[0]
-    return _by_lower_name().get(name.lower())
+    name, _ = parts_of(tag)
+    return _by_lower_name().get(name.replace("_", "").lower())
 
 
 def size_of(name: str, volume_cm3: float) -> tuple[float, float]:
