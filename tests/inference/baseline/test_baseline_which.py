@@ -1,0 +1,120 @@
+"""Which thing is meant where a place, a distance or a comparison tells, and what "it" means."""
+
+from __future__ import annotations
+
+import pytest
+from tests.inference.baseline.meaning import parts, read
+from tests.inference.baseline.room import TextRoom
+
+from adamo_vh.inference.baseline.language.requests import understand
+from adamo_vh.inference.baseline.sight.kinds import class_of
+from adamo_vh.inference.baseline.tags import parts_of
+
+SENTENCES = {
+    "Pick the object left of the plate": ["from-left hold"],
+    "Pick the cup left of the plate": ["Cup from-left hold"],
+    "Pick the thing next to the plant": ["from-near hold"],
+    "Take the cup from the table and put it on the floor": ["Cup from-surface floor"],
+    "Pick up the nearest lock": ["Lock nearest hold"],
+    "Pick the object that is closest to the plate": ["nearest hold"],
+    "Pick the farthest object": ["farthest hold"],
+    "Put three objects on the floor": ["all x3 floor"],
+    "Put all non-red things on the floor": ["all but(all red) floor"],
+    "Pick something blue": ["blue hold"],
+    "Could I have the glass?": ["Glass hold"],
+    "Hand the plate over": ["Plate hold"],
+    "Put the cup as far from the plate as possible": ["Cup far(Plate)"],
+    "Is the cup bigger than the glass?": ["? is Cup Cup largest"],
+    "Which is bigger, the cup or the glass?": ["? which Cup largest"],
+    "Which of the batteries is smaller?": ["? which Battery smallest"],
+    "Which object is closest to the plate?": ["? which nearest"],
+    "How far is the plant from the plate?": ["? distance IndoorPlant at near(Plate)"],
+    "Where are you?": ["? stand"],
+    "Go two metres forward": ["! walk ahead 2"],
+    "step back": ["! walk back 0.6"],
+    "one step to the left": ["! walk left 0.6"],
+    "Turn right 90 degrees": ["! look right"],
+    "Turn around by 180 degrees": ["! look back"],
+}
+
+REFUSED = {
+    "Put the cup beside the plate and the glass": "which of the two",
+    "Put the cup on another table": "one from another",
+    "Pick the empty glass": "empty",
+    "Turn left by 45 degrees": "90 or 180",
+    "Put the cup somewhere else": "else",
+}
+
+AFTER = {
+    "Put it on the floor": ["cup_45 floor"],
+    "Put them on the floor": ["plate_57 floor", "cup_45 floor"],
+    "Put the object on the floor": ["cup_45 floor"],
+    "Put these objects on the floor": ["plate_57 floor", "cup_45 floor"],
+    "Put everything on the floor": ["all floor"],
+    "Put everything else on the floor": ["all but(plate_57) but(cup_45) floor"],
+    "Pick the object left of the plate": ["from-left hold"],
+    "How many objects are there?": ["? count all"],
+    "Go two metres forward": ["! walk ahead 2"],
+}
+
+
+@pytest.mark.parametrize(("text", "meaning"), SENTENCES.items())
+def test_places_and_comparisons_are_read(text, meaning):
+    assert read(text) == meaning
+
+
+@pytest.mark.parametrize(("text", "named"), REFUSED.items())
+def test_what_cannot_be_told_apart_is_refused(text, named):
+    plan = understand(text)
+    assert named in plan.problem
+    assert not plan.goals
+
+
+@pytest.mark.parametrize(("text", "meaning"), AFTER.items())
+def test_what_was_handled_before_is_meant_only_where_it_is_pointed_at(text, meaning):
+    assert parts(understand(text, ("Cup_45", "Plate_57"))) == meaning
+
+
+@pytest.mark.parametrize(
+    ("text", "held"),
+    [
+        ("Pick the object closest to the plate", "Binoculars_21"),
+        ("Pick the object next to the plant", "Glass_37"),
+        ("Pick the cup on the shelf", ""),
+        ("Pick the cup on the desk", ""),
+        ("Pick the cup on the table", "Cup_45"),
+    ],
+)
+def test_a_thing_is_told_by_its_place(text, held):
+    assert (TextRoom(text).run().held or "") == held
+
+
+@pytest.mark.parametrize(
+    ("text", "says", "never"),
+    [
+        ("How many objects are on the table?", "19", "none"),
+        ("Is the cup bigger than the key?", "Yes", "No"),
+        ("Is the key larger than the cup?", "No", "Yes"),
+        ("Which is smaller, the cup or the key?", "Key_34", "Cup_45"),
+        ("Where are you?", "I stand at (", "nothing"),
+    ],
+)
+def test_questions_are_answered_by_what_is_known(text, says, never):
+    answer = TextRoom(text).run().answer
+    assert says in answer
+    assert never not in answer
+
+
+@pytest.mark.parametrize(
+    ("tag", "name", "number", "kind"),
+    [
+        ("Plate_57", "Plate", "57", "Plate"),
+        ("57", "", "57", None),
+        ("Wine_Bottle_36", "Wine_Bottle", "36", "WineBottle"),
+        ("blue_cup", "blue_cup", "", None),
+        ("thing-a", "thing-a", "", None),
+    ],
+)
+def test_a_tag_has_a_name_and_a_number(tag, name, number, kind):
+    assert parts_of(tag) == (name, number)
+    assert class_of(tag) == kind
