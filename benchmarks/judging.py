@@ -293,6 +293,9 @@ def false_claims(outcome: Outcome, met: bool | None = None) -> list[str]:
     answer, found = outcome.answer, []
     if met is False and re.match(r"\s*done\b", answer, re.IGNORECASE):
         found.append(f"says that it is done: {answer}")
+    for listed in re.findall(r"On the floor I know of \d+ things?: ([^.]*)", answer):
+        off = [t for t in re.findall(_TAG, listed) if _tagged(outcome, t).support != "floor"]
+        found += [f"{tag} is not on the floor" for tag in off]
     for claim in re.split(r"(?<=[.!?;:])\s+|, because ", answer):
         found += [f"{claim} [{why}]" for why in _untrue(claim, outcome)]
     return found
@@ -309,6 +312,7 @@ def _untrue(claim: str, outcome: Outcome) -> Iterable[str]:
             yield f"{tag} is not held"
     if re.search(r"I hold nothing|my hand is empty", claim) and outcome.after.body.held is not None:
         yield "the hand is not empty"
+    yield from _untrue_measures(claim, outcome)
     yield from _untrue_distances(claim, outcome)
     for tag, colours in re.findall(rf"({_TAG}) looks ([a-z]+(?: and [a-z]+)?)", claim):
         if not set(colours.split(" and ")) & set(COLOURS[_number(tag)]):
@@ -325,6 +329,27 @@ def _untrue(claim: str, outcome: Outcome) -> Iterable[str]:
             yield f"{tag} was moved"
     if re.search(r"\bI (?:did|moved) nothing", claim) and outcome.moved():
         yield f"{outcome.moved()} were moved"
+
+
+def _untrue_measures(claim: str, outcome: Outcome) -> Iterable[str]:
+    """Distances between things, sizes, and where the body stands."""
+    for one, metres, other in re.findall(rf"({_TAG}) is (\d+\.\d+) m from ({_TAG}|me)\b", claim):
+        there = outcome.after.body.position
+        if other != "me":
+            there = _tagged(outcome, other).box.center
+        apart = _tagged(outcome, one).box.center.horizontal_distance(there)
+        if abs(apart - float(metres)) > 0.05:
+            yield f"{one} is {apart:.2f} m from {other}"
+    for tag, volume in re.findall(
+        rf"({_TAG}) (?:has|is .*) (?:a box|a volume) of (\d+) cm3", claim
+    ):
+        real = _tagged(outcome, tag).box.volume_m3 * 1e6
+        if abs(real - float(volume)) > max(2.0, 0.02 * real):
+            yield f"{tag} has {real:.0f} cm3"
+    if found := re.search(r"I stand at \((-?[\d.]+), (-?[\d.]+),", claim):
+        place = Vec3(float(found[1]), float(found[2]), 0.0)
+        if outcome.after.body.position.horizontal_distance(place) > 0.05:
+            yield f"it stands at {outcome.after.body.position}"
 
 
 def _untrue_distances(claim: str, outcome: Outcome) -> Iterable[str]:

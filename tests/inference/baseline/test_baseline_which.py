@@ -79,7 +79,7 @@ def test_what_was_handled_before_is_meant_only_where_it_is_pointed_at(text, mean
     ("text", "held"),
     [
         ("Pick the object closest to the plate", "Binoculars_21"),
-        ("Pick the object next to the plant", "Glass_37"),
+        ("Pick the object to the left of the plate", "Binoculars_21"),
         ("Pick the cup on the shelf", ""),
         ("Pick the cup on the desk", ""),
         ("Pick the cup on the table", "Cup_45"),

@@ -162,7 +162,9 @@ def _nearness(tag: str, memory: Memory) -> float:
     return -sum(job.tag == tag for job in memory.jobs)
 
 
-_NEAR_SOURCE_M = 0.6
+_NEAR_SOURCE_M, _AROUND_M = 0.3, 0.6
+_OFF_M = 0.04
+"""A height is an estimate."""
 _FLOOR_BOTTOM_M = 0.1
 _LEFT_OUT = 0.5
 _CONTRADICTS = 0.25
@@ -337,7 +339,7 @@ def _from_there(
         return 1.0 if thing.bottom_z < _FLOOR_BOTTOM_M else 0.0
     if relation is Relation.SURFACE:
         low, high = heights(classes[0])
-        usual = low - _FLOOR_BOTTOM_M <= thing.bottom_z <= high + _FLOOR_BOTTOM_M
+        usual = low - _OFF_M <= thing.bottom_z <= high + _OFF_M
         return float(usual and may_be_found(classes[0]))
     near = [
         other.position.horizontal_distance(thing.position)
@@ -346,7 +348,8 @@ def _from_there(
         and class_of(other.tag) in classes
         and (relation is Relation.NEAR or side_seen(thing, other, viewer) is relation)
     ]
-    return 1.0 if near and min(near) < _NEAR_SOURCE_M else 0.1
+    nearest = min(near, default=math.inf)
+    return 1.0 if nearest <= _NEAR_SOURCE_M else 0.6 if nearest < _AROUND_M else 0.1
 
 
 def thing_of(tag: str, position: Vec3, volume_cm3: float, kind: str = "") -> Thing:
