@@ -77,6 +77,8 @@ class Brain:
         last = len(roles) - roles[::-1].index("assistant") if "assistant" in roles else 0
         text = json.dumps([message["content"] for message in request["messages"][last:]])
         if "left half" in text:
+            if not _pictures(request):
+                return "I see no picture."
             left, right = _seen(_pictures(request)[-1])
             return "No idea." if self.pictures == "unseen" else f"{left}, {right}"
         if "Answer with the one word" in text:

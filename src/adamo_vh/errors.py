@@ -91,12 +91,20 @@ class ProviderError(ModelError):
     Attributes:
         status: The HTTP status of the last failure; None if nothing was answered.
         words: What the server said of it, without keys.
+        most_pictures: How many pictures a prompt may hold, if it is about that; None if not.
     """
 
-    def __init__(self, text: str, status: int | None = None, words: str = "") -> None:
+    def __init__(
+        self,
+        text: str,
+        status: int | None = None,
+        words: str = "",
+        most_pictures: int | None = None,
+    ) -> None:
         super().__init__(text)
         self.status = status
         self.words = words
+        self.most_pictures = most_pictures
 
 
 class RefusedError(ProviderError):

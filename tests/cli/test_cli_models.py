@@ -33,9 +33,9 @@ def test_a_good_model_is_all_ok_and_asked_natively() -> None:
         code, text = check(server.uri())
     assert code == 0
     lines = text.splitlines()
-    assert [line.split()[0] for line in lines[:7]] == ["ok"] * 6 + ["=>"]
-    assert "native" in lines[6]
-    assert "4 requests" in lines[7]
+    assert [line.split()[0] for line in lines[:8]] == ["ok"] * 7 + ["=>"]
+    assert "native" in lines[7]
+    assert "5 requests" in lines[8]
     assert "fix" not in text
 
 
@@ -44,7 +44,7 @@ def test_the_second_time_nothing_is_asked_unless_told_so() -> None:
     with FakeProvider(brain) as server:
         check(server.uri())
         assert "--refresh" in check(server.uri())[1]
-        assert len(brain.asked) == 4
+        assert len(brain.asked) == 5
         brain.tools = "400"
         assert "schema: no tools" in check(server.uri(), "--refresh")[1]
         assert "schema: no tools" in check(server.uri())[1]

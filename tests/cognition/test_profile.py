@@ -204,12 +204,14 @@ class Blind(ScriptedModel):
     """A model that a probe found to see no pictures."""
 
     sight = Support.NO
+    several = Support.UNTESTED
 
     @property
     def info(self) -> ModelInfo:
         found = Capabilities(
             "openai:m", Rung.NATIVE, ToolSupport.NATIVE, Support.YES, self.sight, Support.UNTESTED
         )
+        found = replace(found, several_pictures=self.several)
         return replace(super().info, capabilities=found)
 
 
@@ -221,6 +223,24 @@ def test_a_model_that_sees_no_pictures_is_shown_none() -> None:
         fitting(profile("paper", {"state": "none"}), blind)
     blind.sight = Support.UNKNOWN
     assert fitting(PAPER, blind) == PAPER
+
+
+@pytest.mark.parametrize(
+    ("name", "switches"),
+    [
+        ("paper", {"pictures": "1"}),
+        ("lean", {"closeups": "off", "min_confidence": "0"}),
+        ("single", {"closeups": "off", "min_confidence": "0"}),
+    ],
+)
+def test_a_server_that_takes_one_picture_a_prompt_is_sent_one(
+    name: str, switches: dict[str, str]
+) -> None:
+    narrow = Blind("n", ())
+    narrow.sight, narrow.several = Support.YES, Support.REFUSED
+    assert fitting(profile(name, {}), narrow) == profile(name, switches)
+    narrow.several = Support.UNKNOWN
+    assert fitting(profile(name, {}), narrow) == profile(name, {})
 
 
 @pytest.mark.parametrize("name", ["paper", "lean"])

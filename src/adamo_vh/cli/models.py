@@ -23,6 +23,7 @@ from adamo_vh.session.minds import model_of
 
 _SIGHT_FIX = "it is shown none (pictures=none) and has the symbolic text alone"
 _OWN_SIGHT_FIX = f"start llama-server with --mmproj FILE; else {_SIGHT_FIX}"
+_ONE_PICTURE_FIX = "none is needed, it is shown the newest alone (pictures=1) and no close-ups"
 _TOOLS_FIX = "none is needed, it is asked another way"
 _OWN_TOOLS_FIX = (
     "start llama-server with --jinja, vLLM with --enable-auto-tool-choice --tool-call-parser NAME; "
@@ -99,6 +100,7 @@ def _lines(found: Capabilities) -> Iterator[_Line]:
     yield _Line("ok", "reachable", found.uri)
     sight_fix = _OWN_SIGHT_FIX if own else _SIGHT_FIX
     yield _sight("pictures", found.pictures, sight_fix)
+    yield _sight("several pictures", found.several_pictures, _ONE_PICTURE_FIX)
     yield _sight("pictures in results", found.result_pictures)
     native = found.tools is ToolSupport.NATIVE
     tools_fix = _OWN_TOOLS_FIX if own else _TOOLS_FIX

@@ -149,15 +149,20 @@ class Spent:
     seconds: float = 0.0
     waited_s: float = 0.0
 
-    def after(self, reply: Reply) -> Spent:
-        """The same with what a reply took that came before; one unknown price makes it unknown."""
-        costs = (reply.cost_usd, self.cost_usd)
+    @classmethod
+    def on(cls, reply: Reply) -> Spent:
+        """What a reply took."""
+        return cls(reply.usage, reply.requests, reply.cost_usd, reply.seconds, reply.waited_s)
+
+    def __add__(self, other: Spent) -> Spent:
+        """Both together; one unknown price makes it unknown."""
+        costs = (self.cost_usd, other.cost_usd)
         return Spent(
-            reply.usage + self.usage,
-            reply.requests + self.requests,
+            self.usage + other.usage,
+            self.requests + other.requests,
             None if costs[0] is None or costs[1] is None else costs[0] + costs[1],
-            reply.seconds + self.seconds,
-            reply.waited_s + self.waited_s,
+            self.seconds + other.seconds,
+            self.waited_s + other.waited_s,
         )
 
 

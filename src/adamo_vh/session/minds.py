@@ -99,7 +99,8 @@ def is_deterministic(uri: str) -> bool:
 def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None) -> Profile:
     """The profile that a model can follow, with the tools that it is given.
 
-    One that sees no pictures is shown none, one that is asked for steps as text gives one a turn,
+    One that sees no pictures is shown none, one whose server takes one a prompt is shown the
+    newest alone, one that is asked for steps as text gives one a turn,
     and without the tools for close-ups there are none.
 
     Raises:
@@ -113,6 +114,8 @@ def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None)
                 "leave state=none out."
             )
         profile = profile.without_pictures()
+    elif known is not None and known.several_pictures is Support.REFUSED:
+        profile = profile.with_one_picture()
     if model.info.rung in (Rung.SCHEMA, Rung.REACT):
         profile = replace(profile, plan=1)
     if tools is not None and not {INSPECT, SURVEY} <= set(tools):

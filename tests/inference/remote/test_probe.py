@@ -38,7 +38,7 @@ def probed(brain: Brain) -> Capabilities:
         return probe(server.uri(), QUICK)
 
 
-def test_a_model_that_can_do_everything_is_asked_four_times() -> None:
+def test_a_model_that_can_do_everything_is_asked_five_times() -> None:
     brain = Brain()
     found = probed(brain)
     assert found.rung is Rung.NATIVE
@@ -46,8 +46,8 @@ def test_a_model_that_can_do_everything_is_asked_four_times() -> None:
     assert (found.pictures, found.result_pictures) == (Support.YES, Support.YES)
     assert found.schema is Support.YES
     assert found.refused == ()
-    assert found.requests == len(brain.asked) == 4
-    assert found.usage == Usage(4 * 1200, 4 * 34)
+    assert found.requests == len(brain.asked) == 5
+    assert found.usage == Usage(5 * 1200, 5 * 34)
     assert 0 < found.seconds < 10
     assert found.when.endswith("+00:00")
 
@@ -150,7 +150,7 @@ def test_a_rate_limit_on_the_way_is_not_taken_for_a_refusal(own_cache: Path) -> 
 
     with FakeProvider(busy) as server, pytest.raises(ModelError, match="slow down"):
         create_model(server.uri(), QUICK)
-    assert len(server.requests) == 1 + 2 * QUICK.max_tries
+    assert len(server.requests) == 1 + 2 * QUICK.max_tries  # The second picture, and a plain word
     assert not list(own_cache.rglob("*.json"))
 
 

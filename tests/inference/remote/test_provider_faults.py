@@ -16,6 +16,7 @@ from tests.fake_provider import Canned, FakeProvider, fault
 from tests.talk import ASK, NAMES, QUICK, TOOLS, tell
 
 from adamo_vh.errors import ProviderError, RefusedError
+from adamo_vh.inference.messages import HumanMessage, TextPart
 from adamo_vh.inference.model import Sampling
 from adamo_vh.inference.remote.endpoint import NO_REMOTE
 from adamo_vh.inference.remote.exchange import Exchange
@@ -32,6 +33,10 @@ KEYS = {
 }
 
 
+_BLIND = (*ASK[:2], HumanMessage((TextPart("Pick the plate"),)))
+"""Without a picture that might be why."""
+
+
 def raised(dialect: Dialect, *answers: Canned, retry: RetryPolicy = QUICK) -> tuple[str, int]:
     """What a model says that fails, and how many requests it took."""
     with (
@@ -39,7 +44,7 @@ def raised(dialect: Dialect, *answers: Canned, retry: RetryPolicy = QUICK) -> tu
         ProviderModel(uri(dialect, server), retry) as model,
         pytest.raises(ProviderError) as caught,
     ):
-        model.complete(ASK, TOOLS, Sampling())
+        model.complete(_BLIND, TOOLS, Sampling())
     assert caught.value.__cause__ is None and caught.value.__context__ is None
     return str(caught.value), len(server.requests)
 

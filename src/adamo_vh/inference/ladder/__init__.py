@@ -183,7 +183,7 @@ def _repaired(first: Reply, ask: Callable[[], Reply]) -> Reply:
     try:
         return ask()
     except ModelError as error:
-        error.spent = (error.spent or Spent()).after(first)
+        error.spent = Spent.on(first) + (error.spent or Spent())
         raise
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 
-_PROBE = 2
+_PROBE = 3
 """Counts the ways of probing; what an earlier one found is asked anew."""
 
 
@@ -76,11 +76,13 @@ class Capabilities:
     """Date and time of the probe, ISO 8601, UTC."""
     unanswered: tuple[str, ...] = ()
     """Why questions were not answered, a sentence each."""
+    several_pictures: Support = Support.UNTESTED
+    """Whether one prompt may hold more than one picture."""
 
     @property
     def is_complete(self) -> bool:
         """Whether every question was answered."""
-        seen = (self.schema, self.pictures, self.result_pictures)
+        seen = (self.schema, self.pictures, self.result_pictures, self.several_pictures)
         return self.tools is not ToolSupport.UNKNOWN and Support.UNKNOWN not in seen
 
 

@@ -159,22 +159,35 @@ def _failed(status: int, body: Any, exchange: Exchange, *, hidden: bool = False)
     if status != 429 and _TOO_LONG.search(everything):
         text = f"The prompt is longer than the model's context. {text} Keep fewer steps in it."
         return Failure(text, False, status=status, words=said)
-    if fix := _picture_fix(everything) or _FIXES.get(status):
+    most = _most_pictures(everything)
+    if fix := _FIXES.get(status) if most is None else picture_fix(most):
         text = f"{text} {fix}"
     final = _PERMANENT.search(everything) or _is_out_of_credit(body, everything)
     retryable = (status in _RETRYABLE_STATUS or status >= 500) and not final
     waits = _retry_after_s(exchange.headers, exchange.text)
-    return Failure(text, retryable, waits, status=status, words=said)
+    return Failure(text, retryable, waits, status=status, words=said, most_pictures=most)
 
 
-def _picture_fix(complaint: str) -> str:
-    """What to do about a complaint of too many pictures; empty if there is none."""
-    if _NO_PICTURES.search(complaint):
+def is_too_long(words: str) -> bool:
+    """Whether a server complains of a prompt that is longer than its context."""
+    return _TOO_LONG.search(words[:_JUDGED]) is not None
+
+
+def picture_fix(most: int) -> str:
+    """What to do about a server that takes so many pictures a prompt at most."""
+    if most == 0:
         return "Leave the pictures out: --switch pictures=none."
+    closeups = " and, if the profile has close-ups, --switch closeups=off --switch min_confidence=0"
+    return f"Keep fewer pictures in the prompt: --switch pictures={most}{closeups * (most == 1)}."
+
+
+def _most_pictures(complaint: str) -> int | None:
+    """How many pictures a server takes that complains of too many; None if it does not."""
+    if _NO_PICTURES.search(complaint):
+        return 0
     if (found := _FEW_PICTURES.search(complaint)) is None:
-        return ""
-    most = found[1] or found[2] or "1"
-    return f"Keep fewer pictures in the prompt: --switch pictures={most}."
+        return None
+    return int(found[1] or found[2] or 1)
 
 
 def _is_out_of_credit(body: Any, everything: str) -> bool:

@@ -93,6 +93,7 @@ class _Probe:
         self._pictures = known.pictures if known else Support.UNKNOWN
         self._results = known.result_pictures if known else Support.UNKNOWN
         self._schema = known.schema if known else Support.UNKNOWN
+        self._several = known.several_pictures if known else Support.UNKNOWN
         self._called: tuple[Message, ...] | None = None
         """The conversation up to a native call."""
         self._why: dict[str, str] = {}
@@ -126,11 +127,15 @@ class _Probe:
             self._seconds + time.monotonic() - started,
             datetime.now(UTC).isoformat(timespec="seconds"),
             tuple(self._why.values()),
+            self._several,
         )
 
     def _ask_unknown(self, first: tuple[str, str], second: tuple[str, str]) -> None:
         if self._pictures is Support.UNKNOWN:
             self._pictures = self._sees_picture(first)
+        if self._several is Support.UNKNOWN and self._pictures is not Support.UNKNOWN:
+            seen = self._pictures is Support.YES
+            self._several = self._takes_several(first) if seen else Support.UNTESTED
         if self._tools is ToolSupport.UNKNOWN:
             self._tools = self._calls_tool()
         if self._results is Support.UNKNOWN:
@@ -142,6 +147,13 @@ class _Probe:
         question = HumanMessage((_text("colours"), two_colours(*colours)))
         reply = self._ask(Feature.PICTURES, [question])
         return reply if isinstance(reply, Support) else _named(reply.message.text, colours)
+
+    def _takes_several(self, colours: tuple[str, str]) -> Support:
+        """Whether a prompt may hold two pictures, whatever is made of them."""
+        picture = two_colours(*colours)
+        question = HumanMessage((_text("word"), picture, picture))
+        reply = self._ask(Feature.PICTURES, [question], what="several pictures")
+        return reply if isinstance(reply, Support) else Support.YES
 
     def _calls_tool(self) -> ToolSupport:
         """Whether it calls a tool; the conversation up to a native call is remembered."""
@@ -170,7 +182,9 @@ class _Probe:
         assert isinstance(said, AIMessage)
         picture = two_colours(*colours)
         result = ToolMessage(said.calls[0].id, LAMP.name, _text("result").text, (picture,))
-        reply = self._ask(Feature.PICTURES, [*self._called, result], [LAMP], results=True)
+        reply = self._ask(
+            Feature.PICTURES, [*self._called, result], [LAMP], what="pictures in results"
+        )
         return reply if isinstance(reply, Support) else _named(reply.message.text, colours)
 
     def _obeys_schema(self) -> Support:
@@ -201,10 +215,10 @@ class _Probe:
         tools: Sequence[ToolSchema] = (),
         schema: ToolSchema | None = None,
         *,
-        results: bool = False,
+        what: str = "",
     ) -> Reply | Support:
         """The reply; `REFUSED` if the server does not take the feature, `UNKNOWN` if none came."""
-        what = f"{feature} in results" if results else str(feature)
+        what = what or str(feature)
         self._why.pop(what, None)
         try:
             reply = self._model.complete(messages, tools, _SAMPLING, schema=schema)
@@ -213,7 +227,8 @@ class _Probe:
             # A server may report as a fault of its own what it does not know, and may be down.
             if not (self._answers and isinstance(error, RefusedError)):
                 self._must_answer()
-            if refuses(feature, error):
+            shown = feature is Feature.PICTURES and error.most_pictures is not None
+            if shown or refuses(feature, error):
                 return Support.REFUSED
             self._why[what] = f"{what}: {error}"
             return Support.UNKNOWN

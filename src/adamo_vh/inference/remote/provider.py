@@ -25,6 +25,11 @@ from adamo_vh.inference.remote.endpoint import parse_endpoint
 from adamo_vh.inference.remote.exchange import Exchange, sent_settings, watch
 from adamo_vh.inference.remote.faults import read_error, read_exchange, refused_setting
 from adamo_vh.inference.remote.gate import Passage
+from adamo_vh.inference.remote.picture_trial import (
+    count_pictures,
+    may_be_pictures,
+    with_fewer_pictures,
+)
 from adamo_vh.inference.remote.replies import Reading, read_refused_call, read_response
 from adamo_vh.inference.remote.retry import Failure, RetryPolicy, Success, run_with_retries
 from adamo_vh.inference.remote.settings import EXACT, Settings
@@ -102,6 +107,8 @@ class ProviderModel:
         self._several_calls = several_calls
         self._cache = cache
         self._lock = Lock()
+        self._pictures = 0
+        """Pictures of the prompt that held most of them and was answered."""
         self._http: httpx2.AsyncClient | None = None
         self._entered = False
         self._connection = self._connect()
@@ -165,13 +172,38 @@ class ProviderModel:
         Raises:
             ProviderError: The request was refused, or failed after all retries.
         """
+
+        def ask_once(prompt: Sequence[Message]) -> Reply:
+            once = replace(self._retry, max_tries=1)
+            return self._ask(prompt, tools, sampling, schema, once)
+
+        pictures, refused = count_pictures(messages), None
+        try:
+            reply = self._ask(messages, tools, sampling, schema, self._retry)
+        except ProviderError as error:
+            if pictures <= self._pictures or not may_be_pictures(error):
+                raise
+            refused = error
+        if refused is not None:
+            reply = with_fewer_pictures(ask_once, messages, refused)
+        self._pictures = max(self._pictures, pictures)
+        return reply
+
+    def _ask(
+        self,
+        messages: Sequence[Message],
+        tools: Sequence[ToolSchema],
+        sampling: Sampling,
+        schema: ToolSchema | None,
+        retry: RetryPolicy,
+    ) -> Reply:
         asking = _Asking(messages, tools, to_parameters(tools, schema), sampling)
         started = time.monotonic()
         where = self._endpoint.base_url or self._endpoint.prefix
         passage = Passage(where, lambda: estimate_request(messages, tools, rule_for(self._name)))
         try:
             answer = run_with_retries(
-                self._retry,
+                retry,
                 self._name,
                 lambda: self._pass(asking, passage),
                 adapt=lambda failure: bool(failure.refused),

@@ -63,6 +63,8 @@ class Failure:
     """HTTP status that it comes to; None if nothing was answered."""
     words: str = ""
     """The server's own words; free of secrets."""
+    most_pictures: int | None = None
+    """How many pictures a prompt may hold, if it is about that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,13 +108,14 @@ def run_with_retries(
         if adapt(outcome):
             continue
         if not outcome.retryable:
-            raise RefusedError(f"{name}: {outcome.text}", outcome.status, outcome.words)
+            text = f"{name}: {outcome.text}"
+            raise RefusedError(text, outcome.status, outcome.words, outcome.most_pictures)
         failures += 1
         lost_s = time.monotonic() - begin - held_s
         pause_s = policy.pause_s(failures, outcome.retry_after_s)
         if failures == policy.max_tries or lost_s + pause_s > policy.max_wait_s:
             text = f"{name}: {_last_words(policy, outcome, failures, lost_s)}"
-            raise ProviderError(text, outcome.status, outcome.words)
+            raise ProviderError(text, outcome.status, outcome.words, outcome.most_pictures)
         time.sleep(pause_s)
 
 
