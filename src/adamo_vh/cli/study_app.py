@@ -147,9 +147,32 @@ def bench(
 @study_app.command()
 def report(
     folders: Annotated[
-        list[Path], typer.Argument(help="A run folder, or the folder of a study.", metavar="RUN...")
+        list[Path],
+        typer.Argument(
+            help="The folder of a study; of several, to see them side by side; or run folders.",
+            metavar="RUN...",
+        ),
     ],
-    json: Json = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the report; by default the study's, or report/ for several studies."
+        ),
+    ] = None,
+    pages: Annotated[
+        str,
+        typer.Option(
+            help="Episodes that get a page of their own, if they have none: examples (some "
+            "failures of each kind), failed, all, or none (no link leads out of the report then)."
+        ),
+    ] = "examples",
+    figures: Annotated[
+        Path | None,
+        typer.Option(help="Also draw every chart into this folder, as PDF and SVG for a paper."),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the figures of a study; write nothing.")
+    ] = False,
     timings: Annotated[
         bool,
         typer.Option(
@@ -158,10 +181,10 @@ def report(
         ),
     ] = True,
 ) -> None:
-    """Report what came of an episode or a study: cells, means, failures, rank correlations."""
-    from adamo_vh.cli.study_folders import report_and_show
+    """Write the report of a study: page, tables and figures; or the page of an episode."""
+    from adamo_vh.cli.study_report import report_and_show
 
-    report_and_show(folders, as_json=json, timings=timings)
+    report_and_show(folders, out=out, pages=pages, figures=figures, as_json=json, timings=timings)
 
 
 @study_app.command()

@@ -2,73 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import typer
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.table import Table
 
-from adamo_vh.analysis.study_json import study_json
 from adamo_vh.cli.exits import Exit
-from adamo_vh.cli.terminal import complain, line, put_json, say
-from adamo_vh.errors import ConfigError
-from adamo_vh.readable import readable
+from adamo_vh.cli.terminal import line, put_json, say
 from adamo_vh.record.signing import Signer
-from adamo_vh.report.page import write_page
 from adamo_vh.study.merging import merge
 from adamo_vh.study.rescoring import Rescored, score_again
-from adamo_vh.study.store import is_study, read_outcomes, read_planned, reindex
-
-
-def report_and_show(folders: Sequence[Path], *, as_json: bool, timings: bool) -> None:
-    """Report a study, or write the page of an episode again."""
-    if not any(is_study(folder) for folder in folders):
-        if as_json:
-            raise ConfigError(
-                f"--json reports a study, and {folders[0]} is none: name the folder of one, or "
-                "leave --json out for the page of an episode."
-            )
-        for folder in folders:
-            say(write_page(folder))
-        return
-    if len(folders) > 1:
-        raise ConfigError("Report one study at a time.")
-    (folder,) = folders
-    told, damaged = _told(folder, timings=timings)
-    if as_json:
-        put_json({**told, "damaged": damaged})
-    else:
-        _print_cells(told)
-        line("study", f"{folder}: {told['episodes']} of {told['planned']} episodes")
-    for key, problem in damaged.items():
-        complain(f"damaged: {key}: {problem}")
-    if damaged:
-        raise typer.Exit(Exit.NO)
-
-
-def _told(folder: Path, *, timings: bool) -> tuple[dict[str, Any], dict[str, str]]:
-    outcomes, damaged = read_outcomes(folder)
-    _, planned = read_planned(folder)
-    return {"planned": len(planned), **study_json(outcomes, timings=timings)}, damaged
-
-
-def _print_cells(told: Mapping[str, Any]) -> None:
-    table = Table(
-        "model", "scene", "labeling", "task", "n", "completion", "strict", "would it repeat?",
-        box=SIMPLE_HEAD,
-    )  # fmt: skip
-    for cell in told["cells"]:
-        interval = cell["repeat_interval"]
-        table.add_row(
-            *(readable(str(cell[name])) for name in ("model", "scene", "labeling", "task", "n")),
-            *("" if cell[n] is None else f"{cell[n]:.2f}" for n in ("completion", "strict")),
-            "" if interval is None else f"{interval[0]:.2f} to {interval[1]:.2f}",
-        )
-    Console().print(table)
+from adamo_vh.study.store import read_planned, reindex
 
 
 def merge_and_show(out: Path, parts: Sequence[Path], sign: Path | None, *, as_json: bool) -> None:

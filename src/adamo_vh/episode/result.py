@@ -6,6 +6,7 @@ import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
@@ -257,14 +258,24 @@ def total_cost(answers: Sequence[Reply | Spent]) -> float | None:
     return sum(known) if known and len(known) == len(costs) else None
 
 
+@cache
+def _codecs() -> Mapping[str, TypeAdapter[Any]]:
+    """The codecs of records: they take longer to make than to use."""
+    return {kind.__name__: TypeAdapter(kind) for kind in (Manifest, EpisodeResult)}
+
+
+def _codec(kind: type[object]) -> TypeAdapter[Any]:
+    return _codecs()[kind.__name__]
+
+
 def to_json(record: Manifest | EpisodeResult) -> Any:
     """A record as plain JSON data."""
-    return TypeAdapter(type(record)).dump_python(record, mode="json")
+    return _codec(type(record)).dump_python(record, mode="json")
 
 
 def write_record(folder: Path, name: str, record: Manifest | EpisodeResult) -> None:
     """Write a record into a run folder, whole or not at all."""
-    data = TypeAdapter(type(record)).dump_json(record, indent=1)
+    data = _codec(type(record)).dump_json(record, indent=1)
     write_whole(folder / name, data, durable=True)
 
 
@@ -301,7 +312,8 @@ def _read(path: Path, record_type: type[_T], *, is_old: bool = False) -> _T:
         text = read_text(path, max_bytes=_MOST_BYTES)
         if is_old:
             text = json.dumps(upgraded_result(json.loads(text)))
-        return TypeAdapter(record_type).validate_json(text)
+        record: _T = _codec(record_type).validate_json(text)
+        return record
     except FileError as error:
         raise RecordError(str(error)) from None
     except (ValueError, LookupError, RecursionError) as error:

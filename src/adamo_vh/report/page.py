@@ -7,7 +7,6 @@ escaped, and the page forbids itself every script but its own.
 from __future__ import annotations
 
 import base64
-import hashlib
 import os
 import re
 import warnings
@@ -35,7 +34,7 @@ from adamo_vh.report.exchanges import exchanges
 from adamo_vh.report.failure import facts
 from adamo_vh.report.floor_plan import FloorPlan, floor_plan
 from adamo_vh.report.summary import KINDS, Account, ending, verdict
-from adamo_vh.report.templating import environment, template_text
+from adamo_vh.report.templating import csp_hash, environment, template_text
 from adamo_vh.report.timeline import Turn, turns
 from adamo_vh.report.whereabouts import followed
 
@@ -133,7 +132,8 @@ def render_page(
     steps = turns(trajectory)
     asked = exchanges(steps, config.instruction, initial, config.labeling)
     ended = trajectory.ended or (_ended(result) if result and not steps else None)
-    style, script = template_text("episode.css"), template_text("episode.js")
+    style = template_text("palette.css") + template_text("episode.css")
+    script = template_text("episode.js")
     return (
         environment()
         .get_template("episode.html.j2")
@@ -159,8 +159,8 @@ def render_page(
             picture=lambda name: _data_url(name, frames),
             style=Markup(style),  # Ours, and named by its hash in the page's policy.
             script=Markup(script),
-            style_hash=_csp_hash(style),
-            script_hash=_csp_hash(script),
+            style_hash=csp_hash(style),
+            script_hash=csp_hash(script),
         )
     )
 
@@ -227,9 +227,3 @@ def _checked(frames: Callable[[str], bytes]) -> Callable[[str], bytes]:
         return frames(name)
 
     return frame
-
-
-def _csp_hash(text: str) -> str:
-    """A source expression that allows exactly this inline text."""
-    digest = hashlib.sha256(text.encode()).digest()
-    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import math
 import re
 from functools import cache
@@ -24,6 +26,12 @@ def template_text(name: str) -> str:
     """A file of the templates."""
     folder = resources.files(__package__) / "templates"
     return (folder / name).read_text(encoding="utf-8")
+
+
+def csp_hash(text: str) -> str:
+    """A source expression that allows exactly this inline text."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
 
 
 @cache

@@ -1,0 +1,1 @@
+"""The paper's own figures: what it prints, and its authors' published data, cell by cell."""
