@@ -9,8 +9,8 @@ from adamo_vh.analysis.paper.printed import AVERAGES, BACKBONES
 from adamo_vh.analysis.paper.published import chosen, paper_figures
 from adamo_vh.report.study.headline import paper_name
 from adamo_vh.report.study.material import Material, shown_labeling, shown_scene
-from adamo_vh.report.study.section import OTHER_TASKS, REPEAT, Section, paper_sure, sure
-from adamo_vh.report.study.table import Cell, Row, Table, text
+from adamo_vh.report.study.section import Section, paper_sure, sure
+from adamo_vh.report.study.table import Cell, Row, Table, heads, text
 
 _NOT_PRINTED = "the paper does not print it"
 
@@ -62,20 +62,9 @@ def _table(material: Material) -> Table:
         "asks for, is left out of Look and Total, and counted in “Look + first”, as the paper "
         "prints it. Rows “published” are means of the cells that its authors published, over the "
         "scenes and tasks of this study; rows “printed” stand in the paper.",
-        (
-            "cells",
-            "model",
-            "completion",
-            REPEAT,
-            OTHER_TASKS,
-            "s/call",
-            "Walk",
-            "Look",
-            "Look + first",
-            "Pick",
-            "Drop",
-            "Total",
-            "n",
+        heads(
+            "cells | model | completion | would it repeat? | other tasks? | s/call | "
+            "Walk | Look | Look + first | Pick | Drop | Total | n"
         ),
         tuple(rows),
         is_grouped=True,
@@ -203,16 +192,9 @@ def _families(material: Material) -> Table:
         "The paper’s families of tasks, from picking a single object to long tasks that need "
         "attributes. Over all scenes and labelings of this study; model calls and tokens are per "
         "episode.",
-        (
-            "family",
-            "model",
-            "completion",
-            REPEAT,
-            OTHER_TASKS,
-            "strict",
-            "model calls",
-            "tokens",
-            "n",
+        heads(
+            "family | model | completion | would it repeat? | other tasks? | strict | "
+            "model calls | tokens | n"
         ),
         tuple(rows),
         is_grouped=True,

@@ -10,8 +10,8 @@ from adamo_vh.analysis.comparison import MEASURES, Difference, compare
 from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.report.study.chart import Axis, Chart, Mark, Panel, Series, places, shares
 from adamo_vh.report.study.material import Material
-from adamo_vh.report.study.section import OTHER_TASKS, REPEAT, Section
-from adamo_vh.report.study.table import Cell, Form, Row, Table, text
+from adamo_vh.report.study.section import Section
+from adamo_vh.report.study.table import Cell, Form, Row, Table, heads, text
 
 _ALL_PAIRS = 4
 """With more settings, each is compared with the first alone."""
@@ -96,20 +96,10 @@ def _table(
         "mean (permutation test on the differences of the tasks; with few tasks it cannot get "
         "small). Could have seen: the smallest true difference that so many episodes show with "
         "80 % power; for the same tasks, and for tasks like these.",
-        (
-            "measure",
-            "second less first",
-            "first’s mean",
-            "second’s mean",
-            "difference",
-            REPEAT,
-            OTHER_TASKS,
-            "p",
-            "could have seen: same tasks",
-            "could have seen: other tasks",
-            "tasks",
-            "first’s n",
-            "second’s n",
+        heads(
+            "measure | second less first | first’s mean | second’s mean | difference | "
+            "would it repeat? | other tasks? | p | could have seen: same tasks | "
+            "could have seen: other tasks | tasks | first’s n | second’s n"
         ),
         rows,
         is_grouped=True,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from adamo_vh.analysis.cells import CellRow, Setting, spelled
+from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.report.study.material import Material, shown_labeling, shown_scene
 from adamo_vh.report.study.section import REPEAT, Section
-from adamo_vh.report.study.table import Cell, Row, Table, text
+from adamo_vh.report.study.table import Cell, Row, Table, heads, text
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,16 +61,9 @@ def _table(material: Material, group: _Group, *, is_first: bool) -> Table:
         f"cells-{anchors[0]}",
         ", ".join(what),
         "Completion and strict score of each task, with the interval of its repetitions.",
-        (
-            "task",
-            "completion",
-            REPEAT,
-            "strict",
-            "model calls",
-            "tokens",
-            "variations",
-            "n",
-            "unscored",
+        heads(
+            "task | completion | would it repeat? | strict | model calls | tokens | "
+            "variations | n | unscored"
         ),
         tuple(rows),
         anchors=tuple(anchors),
@@ -97,109 +92,55 @@ def _row(material: Material, row: CellRow) -> Row:
     )
 
 
+_CELLS: tuple[tuple[str, Callable[[CellRow], Cell]], ...] = (
+    ("model", lambda row: text(row.setting.model)),
+    ("profile", lambda row: text(row.setting.profile)),
+    ("axes", lambda row: text(", ".join(f"{n}={value}" for n, value in row.setting.axes))),
+    ("scene", lambda row: text(row.scene)),
+    ("labeling", lambda row: text(row.labeling)),
+    ("task", lambda row: text(row.task)),
+    ("variations", lambda row: text(spelled(row.variations))),
+    ("n", lambda row: Cell(row.figures.n, "count")),
+    ("unscored", lambda row: Cell(row.figures.unscored, "count")),
+    ("completion", lambda row: Cell(row.figures.completion.mean, "share")),
+    (REPEAT, lambda row: Cell(row.figures.completion.repeat, "share")),
+    ("strict", lambda row: Cell(row.figures.strict.mean, "share")),
+    (f"strict: {REPEAT}", lambda row: Cell(row.figures.strict.repeat, "share")),
+    ("model calls", lambda row: Cell(row.figures.model_calls, "number")),
+    ("tokens", lambda row: Cell(row.figures.tokens, "tokens")),
+)
+_EPISODES: tuple[tuple[str, Callable[[Outcome], Cell]], ...] = (
+    ("episode", lambda one: text(one.key)),
+    ("model", lambda one: text(one.model)),
+    ("profile", lambda one: text(one.profile)),
+    ("scene", lambda one: text(one.scene)),
+    ("labeling", lambda one: text(one.labeling)),
+    ("task", lambda one: text(one.task)),
+    ("variation", lambda one: Cell(one.variation, "count")),
+    ("repetition", lambda one: Cell(one.repetition, "count")),
+    ("completion", lambda one: Cell(one.completion, "share")),
+    ("strict", lambda one: Cell(one.strict, "share")),
+    ("ended by", lambda one: text(one.termination)),
+    ("class", lambda one: text(one.diagnosis)),
+    ("code", lambda one: text(one.diagnosis_code)),
+    ("tool calls", lambda one: Cell(one.steps, "count")),
+    ("model calls", lambda one: Cell(one.model_calls, "count")),
+    ("tokens", lambda one: Cell(one.usage.total_tokens, "tokens")),
+    ("cost", lambda one: Cell(one.cost_usd, "dollars")),
+    ("model s", lambda one: Cell(one.model_s, "seconds")),
+    ("record", lambda one: text(one.run)),
+)
+
+
 def cell_rows(material: Material) -> Table:
     """All cells in one table, for programs."""
-    rows = []
-    for row in material.cells:
-        found = row.figures
-        rows.append(
-            Row(
-                (
-                    text(row.setting.model),
-                    text(row.setting.profile),
-                    text(", ".join(f"{name}={value}" for name, value in row.setting.axes)),
-                    text(row.scene),
-                    text(row.labeling),
-                    text(row.task),
-                    text(spelled(row.variations)),
-                    Cell(found.n, "count"),
-                    Cell(found.unscored, "count"),
-                    Cell(found.completion.mean, "share"),
-                    Cell(found.completion.repeat, "share", why=found.why.repeat),
-                    Cell(found.strict.mean, "share"),
-                    Cell(found.strict.repeat, "share", why=found.why.repeat),
-                    Cell(found.model_calls, "number"),
-                    Cell(found.tokens, "tokens"),
-                )
-            )
-        )
-    return Table(
-        "cells",
-        "All cells",
-        "Every cell of the study: all episodes that are alike but for repetition and variation.",
-        (
-            "model",
-            "profile",
-            "axes",
-            "scene",
-            "labeling",
-            "task",
-            "variations",
-            "n",
-            "unscored",
-            "completion",
-            REPEAT,
-            "strict",
-            f"strict: {REPEAT}",
-            "model calls",
-            "tokens",
-        ),
-        tuple(rows),
-    )
+    rows = tuple(Row(tuple(of(row) for _, of in _CELLS)) for row in material.cells)
+    caption = "All episodes that are alike but for repetition and variation."
+    return Table("cells", "All cells", caption, tuple(name for name, _ in _CELLS), rows)
 
 
 def episode_rows(material: Material) -> Table:
     """All episodes in one table, for programs; each with where its record is."""
-    rows = [
-        Row(
-            (
-                text(one.key),
-                text(one.model),
-                text(one.profile),
-                text(one.scene),
-                text(one.labeling),
-                text(one.task),
-                Cell(one.variation, "count"),
-                Cell(one.repetition, "count"),
-                Cell(one.completion, "share"),
-                Cell(one.strict, "share"),
-                text(one.termination),
-                text(one.diagnosis),
-                text(one.diagnosis_code),
-                Cell(one.steps, "count"),
-                Cell(one.model_calls, "count"),
-                Cell(one.usage.total_tokens, "tokens"),
-                Cell(one.cost_usd, "dollars"),
-                Cell(one.model_s, "seconds"),
-                text(one.run),
-            )
-        )
-        for one in material.outcomes
-    ]
-    return Table(
-        "episodes",
-        "All episodes",
-        "One line for each episode.",
-        (
-            "episode",
-            "model",
-            "profile",
-            "scene",
-            "labeling",
-            "task",
-            "variation",
-            "repetition",
-            "completion",
-            "strict",
-            "ended by",
-            "class",
-            "code",
-            "tool calls",
-            "model calls",
-            "tokens",
-            "cost",
-            "model s",
-            "record",
-        ),
-        tuple(rows),
-    )
+    rows = tuple(Row(tuple(of(one) for _, of in _EPISODES)) for one in material.outcomes)
+    caption = "One line for each episode."
+    return Table("episodes", "All episodes", caption, tuple(name for name, _ in _EPISODES), rows)

@@ -8,14 +8,12 @@ from adamo_vh.report.study.chart import Chart, Line, shares
 from adamo_vh.report.study.material import Material
 from adamo_vh.report.study.section import (
     INTERVALS,
-    OTHER_TASKS,
-    REPEAT,
     Section,
     blanks,
     paper_sure,
     sure,
 )
-from adamo_vh.report.study.table import Cell, Row, Table, text
+from adamo_vh.report.study.table import Cell, Row, Table, heads, text
 
 
 def headline(material: Material) -> Section:
@@ -77,19 +75,10 @@ def _table(material: Material, paper: tuple[PaperFigures, ...]) -> Table:
         "successes, for the largest k that every cell was played. n counts scored episodes. "
         "Rows of the paper are means of its published data over the same scenes, labelings and "
         "tasks.",
-        (
-            "model",
-            "completion",
-            REPEAT,
-            OTHER_TASKS,
-            "strict",
-            f"strict: {REPEAT}",
-            f"strict: {OTHER_TASKS}",
-            "pass^k",
-            "k",
-            "tasks",
-            "n",
-            "unscored",
+        heads(
+            "model | completion | would it repeat? | other tasks? | strict | "
+            "strict: would it repeat? | strict: other tasks? | pass^k | k | tasks | "
+            "n | unscored"
         ),
         tuple(rows),
     )

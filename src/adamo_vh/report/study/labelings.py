@@ -13,8 +13,8 @@ from adamo_vh.analysis.paper.published import chosen
 from adamo_vh.report.study.chart import Chart, Mark, Panel, Series, places, shares
 from adamo_vh.report.study.headline import paper_name, paper_tone
 from adamo_vh.report.study.material import Material
-from adamo_vh.report.study.section import OTHER_TASKS, REPEAT, Section, blanks
-from adamo_vh.report.study.table import Cell, Row, Table, text
+from adamo_vh.report.study.section import Section, blanks
+from adamo_vh.report.study.table import Cell, Row, Table, heads, text
 
 WITHOUT, WITH = "opaq", "sem"
 _NO_REPEAT = "deterministic, or something was played only once"
@@ -92,16 +92,8 @@ def _table(material: Material, found: dict[Setting, Difference]) -> Table:
         "its 95 % intervals. p is how often chance alone gives the tasks’ differences such a mean "
         "(permutation test). Gain is the difference in per cent of OPAQ; Looks is how the number "
         "of views changes, the first one counted, as in the paper.",
-        (
-            "model",
-            "OPAQ",
-            "SEM",
-            "difference",
-            REPEAT,
-            OTHER_TASKS,
-            "p",
-            "gain",
-            "Looks",
+        heads(
+            "model | OPAQ | SEM | difference | would it repeat? | other tasks? | p | gain | Looks"
         ),
         tuple(rows),
     )

@@ -12,7 +12,6 @@ from adamo_vh.report.study.material import Material, Source, shown_labeling, sho
 from adamo_vh.report.study.section import Section
 from adamo_vh.report.study.svg import drawn, tone_class
 from adamo_vh.report.study.table import Cell
-from adamo_vh.report.study.words import WORDS
 from adamo_vh.report.templating import csp_hash, environment, template_text
 
 _WIDE_PX, _HALF_PX = 1120.0, 548.0
@@ -55,7 +54,6 @@ def render_study(material: Material, sections: tuple[Section, ...]) -> str:
             played=played(material),
             unfinished=[line for s in material.sources for line in _unfinished(material, s)],
             cards=_cards(material),
-            words=WORDS,
             damaged=damaged,
             drawn=drawn,
             wide=_width,

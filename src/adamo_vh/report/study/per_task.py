@@ -13,7 +13,7 @@ from adamo_vh.report.study.chart import Chart, Mark, Panel, Series, places, shar
 from adamo_vh.report.study.headline import paper_name, paper_tone
 from adamo_vh.report.study.material import Material, builtin_task, shown_labeling, shown_scene
 from adamo_vh.report.study.section import REPEAT, Section
-from adamo_vh.report.study.table import Cell, Row, Table, text
+from adamo_vh.report.study.table import Cell, Row, Table, heads, text
 
 _MOST_BARS = 6
 """Settings that stand side by side in one panel."""
@@ -181,17 +181,7 @@ def _asked(material: Material) -> Table:
         "asks for in actions (ACT), references (REF) and relations (REL). Three of the paper’s "
         "sums do not add up, and two references break its own rules, so the level that its rules "
         "give stands beside the printed one.",
-        (
-            "task",
-            "prompt",
-            "family",
-            "conditions",
-            "ACT",
-            "REF",
-            "REL",
-            "C-D printed",
-            "C-D computed",
-        ),
+        heads("task | prompt | family | conditions | ACT | REF | REL | C-D printed | C-D computed"),
         tuple(rows),
     )
 

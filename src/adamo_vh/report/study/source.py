@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
+from itertools import zip_longest
 from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
@@ -47,7 +48,9 @@ def source_of(
         planned: How many it is to have.
         damaged: What is wrong with records that cannot be read, by key.
     """
-    return Source(name, tuple(outcomes), planned, damaged, _distances(folder, outcomes))
+    # A report is passed on; where it was made is nobody's business.
+    told = {key: line.replace(f"{folder}{os.sep}", "") for key, line in damaged.items()}
+    return Source(name, tuple(outcomes), planned, told, _distances(folder, outcomes))
 
 
 def _distances(folder: Path, outcomes: Iterable[Outcome]) -> dict[str, tuple[int, ...]]:
@@ -120,13 +123,10 @@ def _wanted(outcomes: Sequence[Outcome], pages: Pages) -> Iterator[Outcome]:
     if pages is Pages.FAILED:
         yield from failed
         return
-    kinds: dict[tuple[object, ...], int] = {}
-    shown = 0
+    kinds: dict[tuple[str, ...], list[Outcome]] = {}
+    for one in failed:
+        kind = (one.model, one.profile, one.labeling, one.diagnosis_code)
+        kinds.setdefault(kind, []).append(one)
     # One of each kind before a second of any.
-    for most in range(1, _EXAMPLES + 1):
-        for outcome in failed:
-            kind = (outcome.model, outcome.profile, outcome.labeling, outcome.diagnosis_code)
-            if kinds.get(kind, 0) < most and shown < _MOST_EXAMPLES:
-                kinds[kind] = kinds.get(kind, 0) + 1
-                shown += 1
-                yield outcome
+    turns = zip_longest(*(group[:_EXAMPLES] for group in kinds.values()))
+    yield from [one for turn in turns for one in turn if one is not None][:_MOST_EXAMPLES]

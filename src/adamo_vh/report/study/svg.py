@@ -15,7 +15,7 @@ from adamo_vh.readable import readable
 from adamo_vh.report.study.chart import Axis, Chart, Line, Panel, Series
 
 _TONES = 8
-_HEIGHT_PX = 250.0
+_TOP_PX, _PLOT_PX = 12.0, 190.0
 _LINE_PX = 30.0
 _LETTER_PX = 6.4
 """Of a label, on average."""
@@ -90,17 +90,14 @@ def _on(axis: Axis, value: float, start: float, end: float) -> float:
 
 def _panel(panel: Panel, width: float) -> Markup:
     widest = max((len(name) for _, name in panel.y.ticks), default=1)
-    top = 28.0 if panel.title else 14.0
     left = 24.0 + _LETTER_PX * widest + 10.0
-    frame = _Frame(panel, left, width - 8.0, top, top + _HEIGHT_PX - 60.0)
-    parts = [*_axes(frame, width), *_series(frame)]
-    if panel.title:
-        parts.append(_text(panel.title, left, 15.0, "title", "start"))
+    frame = _Frame(panel, left, width - 8.0, _TOP_PX, _TOP_PX + _PLOT_PX)
+    parts = [*_axes(frame), *_series(frame)]
     label = f"{panel.title or panel.y.label}: {panel.y.label} by {panel.x.label or 'task'}"
     return _picture(width, frame.bottom + (42.0 if panel.x.label else 24.0), label, parts)
 
 
-def _axes(frame: _Frame, width: float) -> Iterator[Markup]:
+def _axes(frame: _Frame) -> Iterator[Markup]:
     x, y = frame.panel.x, frame.panel.y
     for value, name in y.ticks:
         at = frame.y(value)

@@ -173,3 +173,8 @@ def _letter(number: int) -> str:
 def text(value: object, href: str = "") -> Cell:
     """A cell of words."""
     return Cell(str(value), href=href)
+
+
+def heads(line: str) -> tuple[str, ...]:
+    """The names of columns, from one line with bars between them."""
+    return tuple(name.strip() for name in line.split("|"))
