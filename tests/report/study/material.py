@@ -7,7 +7,7 @@ from dataclasses import replace
 from random import Random
 from typing import Any
 
-from tests.outcomes import made
+from tests.outcomes import made, repeated
 
 from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.inference.model import ModelKind
@@ -57,3 +57,16 @@ def material(*sources: Source) -> Material:
 def baseline() -> Iterator[Outcome]:
     """The episodes of a player without chance, each played once."""
     return episodes("baseline", skill=0.9, repetitions=1, model_kind=ModelKind.RULE_BASED)
+
+
+def side_by_side() -> Material:
+    """The same model in two studies, the second with two values of k."""
+    few = ("T1", "T8", "T14")
+    varied = (episodes(tasks=few, repetitions=2, axes={"k": k}, skill=0.8) for k in ("4", "50"))
+    return material(source("old", episodes(tasks=few, repetitions=2)), source("new", *varied))
+
+
+def tiny() -> Material:
+    """Four episodes of two tasks, of which one failed."""
+    done = (*repeated("T1", 1.0, 1.0), *repeated("T8", 1.0, 0.5, diagnosis="reasoning"))
+    return material(source("tiny", iter(done)))

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 from tests.outcomes import made, repeated
-from tests.report.study.expected import EXPECTED
-from tests.report.study.material import baseline, episodes, material, source
+from tests.report.study.expected import ONE_STUDY, SIDE_BY_SIDE
+from tests.report.study.material import baseline, episodes, material, side_by_side, source
 
 from adamo_vh.analysis.figures import figures
 from adamo_vh.analysis.outcome import Outcome
@@ -38,14 +38,25 @@ def found() -> dict[str, Table]:
     return tables(material(source("mine", episodes(), baseline())))
 
 
-@pytest.mark.parametrize("name", EXPECTED)
+@pytest.mark.parametrize("name", ONE_STUDY)
 def test_every_figure_is_as_expected(found: dict[str, Table], name: str) -> None:
-    expected = [line.split(" | ") for line in EXPECTED[name].strip().splitlines()]
+    expected = [line.split(" | ") for line in ONE_STUDY[name].strip().splitlines()]
     assert [list(found[name].columns), *rows(found[name])] == expected
 
 
+@pytest.fixture(scope="module")
+def beside() -> dict[str, Table]:
+    return tables(side_by_side())
+
+
+@pytest.mark.parametrize("name", SIDE_BY_SIDE)
+def test_so_is_every_figure_of_two_studies(beside: dict[str, Table], name: str) -> None:
+    expected = [line.split(" | ") for line in SIDE_BY_SIDE[name].strip().splitlines()]
+    assert [list(beside[name].columns), *rows(beside[name])] == expected
+
+
 def test_no_table_is_left_out_of_what_is_expected(found: dict[str, Table]) -> None:
-    assert {name for name in found if not name.startswith("cells-")} == set(EXPECTED)
+    assert {name for name in found if not name.startswith("cells-")} == set(ONE_STUDY)
 
 
 def test_a_mean_is_that_of_the_analysis(found: dict[str, Table]) -> None:
@@ -54,18 +65,18 @@ def test_a_mean_is_that_of_the_analysis(found: dict[str, Table]) -> None:
         cells.setdefault((one.scene, one.labeling, one.task), []).append(one)
     known = figures(list(cells.values()))
     (row,) = [row for row in found["headline"].rows if row.cells[0].text == "openai:gpt-4o"]
-    assert row.cells[1].value == known.completion.mean
-    assert row.cells[2].value == known.completion.repeat
-    assert row.cells[3].value == known.completion.task
-    assert row.cells[7].value == known.strict.pass_hat[-1]
+    assert row.cells[2].value == known.completion.mean
+    assert row.cells[3].value == known.completion.repeat
+    assert row.cells[4].value == known.completion.task
+    assert row.cells[8].value == known.strict.pass_hat[-1]
 
 
 def test_paper_rows_are_over_the_same_cells_as_ours() -> None:
     only = material(source("mine", iter([made("T1", 1.0, labeling="opaq")])))
     headline = rows(tables(only)["headline"])
     # GPT-4o did T1 in S1 under OPAQ in all of 15 repetitions.
-    assert headline[1][:2] == ["GPT-4o (paper)", "1.00"]
-    assert headline[1][10] == "15"
+    assert headline[1][:3] == ["GPT-4o (paper)", "vlm", "1.00"]
+    assert headline[1][11] == "15"
 
 
 def test_a_task_of_ones_own_has_no_paper_beside_it() -> None:
@@ -84,9 +95,9 @@ def _renamed(one: Outcome) -> Outcome:
 def test_why_an_interval_is_missing_is_told() -> None:
     found = tables(material(source("mine", baseline())))
     (row, *_) = found["headline"].rows
-    assert row.cells[2].value is None
-    assert row.cells[2].why.startswith("deterministic")
-    assert found["headline"].notes[row.cells[2].why] == "a"
+    assert row.cells[3].value is None
+    assert row.cells[3].why.startswith("deterministic")
+    assert found["headline"].notes[row.cells[3].why] == "a"
 
 
 def test_nothing_is_called_zero_that_is_unknown() -> None:

@@ -7,11 +7,13 @@ import io
 import re
 
 import pytest
-from tests.report.study.material import baseline, episodes, material, source
+from tests.report.study.expected_texts import LATEX, MARKDOWN
+from tests.report.study.material import baseline, episodes, material, source, tiny
 
 from adamo_vh.analysis.statistics import Interval
 from adamo_vh.report.study.contents import sections
 from adamo_vh.report.study.every_cell import cell_rows, episode_rows
+from adamo_vh.report.study.page import played
 from adamo_vh.report.study.section import Section
 from adamo_vh.report.study.table import Cell, Row, Table
 from adamo_vh.report.study.texts import comma_separated, latex, markdown
@@ -75,6 +77,12 @@ def test_all_formats_have_all_tables() -> None:
     tex = latex("t", found)
     assert tex.count(r"\begin{tabular}") == tex.count(r"\end{tabular}") == len(names)
     assert tex.isascii()
+
+
+def test_the_texts_of_a_small_study_are_as_expected() -> None:
+    of = tiny()
+    assert markdown("Tiny", played(of), sections(of)) == MARKDOWN
+    assert latex("Tiny", sections(of)[:1]) == LATEX
 
 
 def test_every_cell_and_episode_has_a_line() -> None:

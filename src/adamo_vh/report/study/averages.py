@@ -61,7 +61,7 @@ def _table(material: Material) -> Table:
         "Means over tasks and episodes. Tool calls are per episode; the first view, which nobody "
         "asks for, is left out of Look and Total, and counted in “Look + first”, as the paper "
         "prints it. Rows “published” are means of the cells that its authors published, over the "
-        "scenes and tasks of this study; rows “printed” stand in the paper.",
+        "scenes and tasks of this study; rows “printed” stand in the paper, over all of its tasks.",
         heads(
             "cells | model | completion | would it repeat? | other tasks? | s/call | "
             "Walk | Look | Look + first | Pick | Drop | Total | n"

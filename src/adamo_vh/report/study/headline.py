@@ -51,6 +51,7 @@ def _table(material: Material, paper: tuple[PaperFigures, ...]) -> Table:
             Row(
                 (
                     text(material.name(setting), href=link),
+                    text(setting.model_kind),
                     *sure(found.completion, found.why, link),
                     *sure(found.strict, found.why, link),
                     Cell(hats[-1] if hats else None, "share"),
@@ -62,7 +63,7 @@ def _table(material: Material, paper: tuple[PaperFigures, ...]) -> Table:
             )
         )
     for model in paper:
-        cells = (text(paper_name(model.model)), *paper_sure(model), *blanks(5))
+        cells = (text(paper_name(model.model)), text("vlm"), *paper_sure(model), *blanks(5))
         tasks = len(set(material.tasks))
         counts = (Cell(tasks, "count"), Cell(model.n, "count"), *blanks(1))
         rows.append(Row((*cells, *counts), is_paper=True))
@@ -76,7 +77,7 @@ def _table(material: Material, paper: tuple[PaperFigures, ...]) -> Table:
         "Rows of the paper are means of its published data over the same scenes, labelings and "
         "tasks.",
         heads(
-            "model | completion | would it repeat? | other tasks? | strict | "
+            "model | kind | completion | would it repeat? | other tasks? | strict | "
             "strict: would it repeat? | strict: other tasks? | pass^k | k | tasks | "
             "n | unscored"
         ),

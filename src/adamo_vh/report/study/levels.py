@@ -121,6 +121,8 @@ def _level(cell: PaperCell, level: Level) -> int:
 def _table(material: Material) -> Table:
     found: dict[tuple[Setting, str], list[RankRow]] = {}
     for one in ranks(material.outcomes):
+        if one.labeling == ALL and len(material.labelings) == 1:
+            continue  # It says the same again.
         found.setdefault((one.setting, one.labeling), []).append(one)
     rows = []
     for (setting, labeling), of in found.items():
@@ -129,7 +131,7 @@ def _table(material: Material) -> Table:
         name = f"all {setting.model_kind} models" if pooled else material.name(setting)
         head = (text(name), text("all" if labeling == ALL else shown_labeling(labeling)))
         rows.append(Row((*head, *_ranks([by[column] for column in _COLUMNS]))))
-    for labeling in (ALL, *material.labelings):
+    for labeling in (*([ALL] if len(material.labelings) > 1 else []), *material.labelings):
         used = material.labelings if labeling == ALL else [labeling]
         points = {level: _paper_points(material, used, level) for level in _LEVELS}
         if not points["printed"]:

@@ -23,6 +23,7 @@ class _Card:
     """The headline figure of a setting."""
 
     name: str
+    kind: str
     tone: str
     href: str
     completion: str
@@ -120,6 +121,7 @@ def _cards(material: Material) -> list[_Card]:
         cards.append(
             _Card(
                 name=material.name(setting),
+                kind=setting.model_kind,
                 tone=tone_class(material.tone(setting)),
                 href=material.link(setting),
                 completion=Cell(found.completion.mean, "share").text,
