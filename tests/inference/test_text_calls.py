@@ -171,6 +171,21 @@ def test_values_without_quotes_get_the_type_that_the_tool_wants() -> None:
         "**Function:** `Pick`\n**Parameters:** object = Plate_57",
         'Calling tool Pick with {"object": "Plate_57"}',
         "Let me call the Pick tool with these: {object: Plate_57}",
+        "/Pick Plate_57",
+        "I take it.\n\n/pick Plate_57",
+        "Pick Plate_57",
+        "> Pick: Plate_57",
+        "`Pick(Plate_57)`",
+        '**Pick**(object="Plate_57")',
+        "Pick[57]",
+        "Pick plate 57",
+        "Look at Plate_57",
+        "/Walk 1 2 0",
+        "Drop Plate_57 at (1.0, -0.5, 0)",
+        "/Survey",
+        "1. Pick Plate_57\n2. Drop Plate_57 at (1, 1, 0)",
+        '{"Pick": "Plate_57"}',
+        '<use_tool name="Pick"><object>Plate_57</object></use_tool>',
     ],
 )
 def test_what_looks_like_a_call_and_cannot_be_read_is_said(text: str) -> None:
@@ -198,6 +213,10 @@ def test_what_looks_like_a_call_and_cannot_be_read_is_said(text: str) -> None:
         "I did it. Tools used: Pick and Drop.",
         "I used Walk and Pick. The plate is at x: 1.0, y: 2.0.",
         "Name: the plate. Function: to eat from.",
+        "I will call Pick on Plate_57.",
+        "Look: the plate is on the floor.",
+        "What I did:\n1. Pick Plate_57\n2. Drop Plate_57 at (1, 1, 0)\nIt lies there.",
+        "Done. I picked Plate_57 (Pick) and put it down (Drop).",
     ],
 )
 def test_prose_is_an_answer(text: str) -> None:

@@ -39,7 +39,7 @@ _EFFORT = 50_000
 MARK = re.compile(
     r"</?[|｜]?/?[\w▁:.|｜-]{0,30}?(?:tools?[_▁-]?(?:call|use|sep|code|name|input|arg|param|output"
     r"|response|result|prefix|suffix)|func(?!tion=)|python_|plugin|invoke|parameter"
-    r"|arg_(?:key|value)|action_(?:start|end))[\w▁:.|｜-]{0,30}/?>|</?tools?>|</?call>"
+    r"|arg_(?:key|value)|use_tool|action_(?:start|end))[\w▁:.|｜-]{0,30}/?>|</?tools?>|</?call>"
     r"|\bfunction\s?<[|｜]tool[▁_]sep[|｜]>"
     r"|\[/?(?:TOOL_?CALLS?|FUNCTION_?CALLS?|ARGS)\]|\[CALL_ID\]\w{1,40}"
     r"|\bfunctools(?=\[)|\bto=(?=functions\.)",
@@ -256,7 +256,8 @@ def suspicious(tools: Sequence[ToolSchema]) -> re.Pattern[str]:
     known = {re.escape(key) for tool in tools for key in tool.parameters.get("properties", {})}
     fields = "|".join(sorted(known)) or r"(?!)"
     return re.compile(
-        rf"[\"'](?:{keys})[\"']\s{{0,9}}:\s{{0,9}}[\"'](?:{NAMESPACE})?(?:{names})[\"']"
+        rf"[\"'](?:{names})[\"']\s{{0,9}}:\s{{0,9}}[\"'\d{{\[]"
+        rf"|[\"'](?:{keys})[\"']\s{{0,9}}:\s{{0,9}}[\"'](?:{NAMESPACE})?(?:{names})[\"']"
         rf"|\b(?:{names})(?:\s?\{{|\((?:\s{{0,9}}\w{{1,40}}\s?=|\s{{0,9}}[\"'\d{{\[-]))"
         rf"|</?(?:{names})\b|<{_SPACE}(?:function|invoke)\b"
         rf"|^[ \t*`]{{0,9}}Action\s{{0,3}}:[ \t*`]{{0,9}}(?:{names})\b"
@@ -264,6 +265,27 @@ def suspicious(tools: Sequence[ToolSchema]) -> re.Pattern[str]:
         rf"[ \t*`_\"']{{0,9}}(?:{NAMESPACE})?(?:{names})[ \t*`_\"',]{{0,9}}$"
         rf"|\b(?:{names})\b[^.!?{{}}]{{0,40}}\{{\s{{0,9}}[\"']?(?:{fields})\b[\"']?\s{{0,9}}:",
         re.IGNORECASE | re.MULTILINE,
+    )
+
+
+def command(tools: Sequence[ToolSchema]) -> re.Pattern[str]:
+    """Matches a line that is nothing but a tool's name with tags and numbers behind it.
+
+    Its group ``bullet`` is what makes it an item of a list.
+    """
+    names = "|".join(re.escape(tool.name) for tool in tools) or r"(?!)"
+    known = {re.escape(key) for tool in tools for key in tool.parameters.get("properties", {})}
+    key = rf"(?:(?:{'|'.join(sorted(known)) or '(?!)'})\s?[=:]\s?)?"
+    tag, number = r"[a-z]\w{0,40}_\d{1,9}", r"(?:[a-z]{1,20} )?[+-]?\d[\d.]{0,20}"
+    value = rf"{key}[\"'`#(\[<{{]{{0,3}}(?:{tag}|{number})[\"'`)\]>}}]{{0,3}}"
+    between = r"[ \t]{0,3}(?:[,;]|\b(?:at|to|on|and)\b)?[ \t]{0,3}[(\[]?"
+    return re.compile(
+        r"[ \t]{0,9}(?P<bullet>(?:\d{1,2}[.)]|[-*•])[ \t]{1,3})?"
+        rf"(?:[>/!@*`_$ \t]{{0,9}}(?:{NAMESPACE})?(?:{names})\b[*`_]{{0,3}}[ \t]{{0,3}}[:=(\[<{{]?"
+        rf"(?:[ \t]{{0,3}}\b(?:at|to))?[ \t]{{0,3}}{value}(?:{between}{value}){{0,5}}"
+        r"[ \t.;,*`)\]>}]{0,9}"
+        rf"|[>/!@*`$]{{0,3}}(?:{names})[*`() ]{{0,3}})",
+        re.IGNORECASE,
     )
 
 

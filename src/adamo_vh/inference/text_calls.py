@@ -14,7 +14,15 @@ from dataclasses import dataclass
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.arguments import dump_arguments
-from adamo_vh.inference.call_syntax import GAP, MARK, OPENING, Syntax, WrittenCall, suspicious
+from adamo_vh.inference.call_syntax import (
+    GAP,
+    MARK,
+    OPENING,
+    Syntax,
+    WrittenCall,
+    command,
+    suspicious,
+)
 from adamo_vh.inference.json_scan import JsonScan, whole_json
 from adamo_vh.inference.messages import AIMessage, ToolCall
 from adamo_vh.inference.tool_names import NAMESPACE, fresh_id
@@ -23,6 +31,7 @@ _BROKEN = "holds a call in its text that is not complete or not well formed."
 _INLINE = "holds a call in the middle of its text, so that it is not clear whether it is meant."
 _SEVERAL = "holds calls with other text between them, so that it is not clear which is meant."
 _NAMELESS = "holds arguments without the name of a tool."
+_COMMAND = "holds a line that is written like a command, which calls nothing."
 _FENCE = re.compile(r"```[\w+-]*")
 _LABEL = re.compile(r"\A\s*+(?:\*\*)?Thought(?:\*\*)?\s?:(?:\*\*)?", re.IGNORECASE)
 _LONGEST_NAME = 60
@@ -135,7 +144,9 @@ def _problem(
     if any(MARK.search(piece) or looks_like_call.search(piece) for piece in rest):
         return _BROKEN
     if not places:
-        return _NAMELESS if _is_bare_arguments(text, tools) else ""
+        if _is_bare_arguments(text, tools):
+            return _NAMELESS
+        return _COMMAND if _has_command(text, tools) else ""
     plain = [place for place in places if not place.is_marked]
     if any(not _stands_alone(text, place) for place in plain):
         return _INLINE
@@ -155,6 +166,13 @@ def _stands_alone(text: str, place: _Place) -> bool:
         line_end = text.find("\n", place.end)
         after = text[place.end : len(text) if line_end < 0 else line_end]
     return not before.strip(" \t>*`-") and not after.strip(" \t.,;`")
+
+
+def _has_command(text: str, tools: Sequence[ToolSchema]) -> bool:
+    """Whether a line is a call without the form of one, or a text is nothing but a list of such."""
+    command_line = command(tools)
+    found = [command_line.fullmatch(line) for line in text.splitlines() if line.strip()]
+    return any(line and not line["bullet"] for line in found) or (bool(found) and all(found))
 
 
 def _is_bare_arguments(text: str, tools: Sequence[ToolSchema]) -> bool:

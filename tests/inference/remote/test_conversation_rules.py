@@ -112,6 +112,45 @@ def test_a_server_that_wants_an_answer_behind_results_gets_one(refused: tuple[st
 
 
 @pytest.mark.parametrize(
+    "refusal",
+    [
+        Canned({"object": "error", "message": "No.", "type": "x", "code": "3230"}, 400),
+        Canned({"message": "No.", "type": "invalid_request_message_order", "code": 1}, 400),
+        fault(400, "Not the same number of function calls and responses"),
+        fault(500, "jinja2: roles must alternate"),
+    ],
+)
+def test_a_wrong_order_is_known_by_its_code_too(refusal: Canned) -> None:
+    def strict(request: Json) -> Canned:
+        roles = [message["role"] for message in request["messages"]]
+        return refusal if ("tool", "user") in pairwise(roles) else Chat().answer("Done.")
+
+    call = ToolCall("c1", "Look", {"x": 1, "y": 1, "z": 1})
+    view = HumanMessage((TextPart("New view."), SECOND))
+    messages = (*ASK, AIMessage("n", (call,)), Result("c1", "Look", "Done."), view)
+    told = tell(Chat(), strict, messages)
+    assert told.reply.settings["reshaped"] == ["user_after_tool"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "The decoder prompt (length 9000) is longer than the maximum model length of 8192.",
+        "`inputs` tokens + `max_new_tokens` must be <= 4096. Given: 5000 `inputs` tokens",
+        "Input is too long for requested model.",
+        "Please reduce the length of the messages or completion.",
+        "Your request exceeded model token limit: 8192 (requested: 9000)",
+        "litellm.ContextWindowExceededError: too much",
+        "Range of input length should be [1, 30720]",
+        "request (60000 tokens) exceeds the available context size (50000 tokens)",
+    ],
+)
+def test_a_prompt_beyond_the_context_is_said_to_be_one(words: str) -> None:
+    with pytest.raises(ProviderError, match="longer than the model's context"):
+        tell(Chat(), [fault(400, words)])
+
+
+@pytest.mark.parametrize(
     ("complaint", "fix"),
     [
         ("At most 1 image(s) may be provided in one prompt.", "--switch pictures=1"),

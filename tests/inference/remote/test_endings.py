@@ -128,6 +128,12 @@ COMPLAINTS = [
     (500, {"message": "Model produced an invalid tool call"}),
     (422, {"message": "Could not parse function call in the model's output"}),
     (500, {"message": "The tool call could not be parsed"}),
+    (400, {"message": "Tool choice is none, but model called a tool"}),
+    (400, {"message": "Extra data: line 1 column 24 (char 23)"}),
+    (400, {"message": "Unterminated string starting at: line 1 column 12 (char 11)"}),
+    (500, {"message": "Expecting ',' delimiter: line 1 column 54 (char 53)"}),
+    (400, {"message": "Model produced invalid sequence as part of ToolUse."}),
+    (500, {"message": "Failed to generate a valid tool call"}),
 ]
 
 
@@ -161,6 +167,8 @@ def test_what_the_model_wrote_is_read_out_of_the_complaint(dialect: Dialect) -> 
         "messages[3].tool_calls: could not parse function call arguments",
         "tool_call_id of a tool message is missing",
         "The model does not support tools",
+        "Expecting value: line 1 column 1 (char 0)",
+        "invalid character '<' looking for beginning of value",
         "",
     ],
 )

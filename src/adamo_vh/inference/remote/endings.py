@@ -36,10 +36,19 @@ _OWN_CALL = re.compile(
     r"\b(?:generat|output|by the model|from model|from the model)"
     r"|\bmodel\b.{0,40}?\b(?:malformed|invalid|unparsable)\b.{0,20}?\b(?:tool|function)[ _-]?call"
     r"|\btool call validation failed\b|\battempted to call tool\b|\bfailed to call a function\b"
-    r"|\btool_use_failed\b|\boutput_parse_failed\b",
+    r"|\btool_use_failed\b|\boutput_parse_failed\b"
+    r"|\bmodel (?:has )?(?:called|(?:tried|attempted) to call) (?:a|an unknown) (?:tool|function)\b"
+    r"|\b(?:produced|generated?) (?:an? )?(?:in)?valid\b.{0,40}?\btool[ _-]?(?:use|call)"
+    r"|\berror in extracting (?:tool|function) call"
+    r"|\b(?:Extra data|Unterminated string starting at|Expecting (?:property name[\w ]{0,40}"
+    r"|'[,:]' delimiter)|Invalid \\{1,2}(?:escape|uXXXX escape)|Invalid control character at)"
+    r": line \d{1,6} column \d{1,6}",
     re.IGNORECASE | re.DOTALL,
 )
-"""How servers complain that they cannot read the call which the model has just written."""
+"""How servers complain that they cannot read the call which the model has just written.
+
+A bare complaint about JSON, too: a request is always whole JSON, down to the arguments of calls.
+"""
 _ABOUT_REQUEST = re.compile(r"\bmessages?(?:\[|\.\d)|tool_call_id|\brole\b", re.IGNORECASE)
 _RAW = re.compile(r"raw='(.*)', err=", re.DOTALL)
 _JUDGED = 20_000

@@ -48,8 +48,12 @@ _FEW_PICTURES = re.compile(
 )
 
 _TOO_LONG = re.compile(
-    r"context[ _](?:length|window|size)|maximum context|prompt is too long|exceed_context"
-    r"|input token count .{0,200}? exceeds|maximum prompt length",
+    r"context[ _]?(?:length|window|size)|maximum context|exceed_context|num_ctx"
+    r"|\b(?:prompt|inputs?|sequence)\b(?:(?!image|picture).){0,200}?"
+    r"\b(?:too (?:long|large)|longer than|exceed)"
+    r"|longer than the (?:context|maximum model)|model(?:'s)? token limit|range of input length"
+    r"|maximum prompt length|reduce the length of|too many (?:input|prompt) tokens"
+    r"|max_new_tokens\W{0,2} must be",
     re.IGNORECASE | re.DOTALL,
 )
 
@@ -255,9 +259,13 @@ _SPELLINGS = {
     SEVERAL_SYSTEM: r"system (?:message|role)",
     USER_AFTER_TOOL: r"after (?:the )?(?:role )?['\"]?tool|roles must alternate|expected last role"
     r"|['\"]?user['\"]? (?:messages? )?(?:cannot|can't|must not|may not) follow (?:a )?['\"]?tool"
-    r"|['\"]?tool['\"]? (?:messages? )?must be followed by",
+    r"|['\"]?tool['\"]? (?:messages? )?must be followed by|message[_ ]order|role sequence"
+    r"|same number of function calls and responses|(?:unexpected|wrong) role",
 }
 """How servers spell what may go, in the order in which it goes."""
+
+_WRONG_ORDER = re.compile(r"invalid_request_message_order|\"code\": ?\"?3230\b")
+"""The code for it of the one API that has one."""
 
 _COMPLAINT = frozenset({400, 422})
 
@@ -278,6 +286,8 @@ def refused_setting(exchange: Exchange, present: Collection[str]) -> str | None:
     elif exchange.status not in _COMPLAINT or _TOO_LONG.search(exchange.text[:_JUDGED]):
         return None
     text = _complaint(exchange.body)[:_JUDGED]
+    if USER_AFTER_TOOL in present and _WRONG_ORDER.search(exchange.text[:_JUDGED]):
+        return USER_AFTER_TOOL
     for name, spelling in _SPELLINGS.items():
         if name in present and re.search(rf"(?<![A-Za-z]){spelling}(?![A-Za-z])", text, re.I):
             return name
