@@ -160,13 +160,13 @@ def test_wrong_settings_start_nothing(settings: dict[str, Any], part: str) -> No
 
 def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
     """kill -9 in the middle: what was recorded reads back and replays to the same hashes."""
-    steps = [{"tool": "Look", "args": {"x": 0.1 * (i % 9), "y": -1.0, "z": 0.8}} for i in range(24)]
+    steps = [{"tool": "Look", "args": {"x": 0.1 * (i % 9), "y": -1.0, "z": 0.8}} for i in range(12)]
     script = tmp_path / "long.json"
     script.write_text(json.dumps(steps))
     folder = tmp_path / "run"
     arguments = ["run", "Look around", "--model", f"scripted:{script}", "--out", str(folder)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "adamo_vh", *arguments, "--resolution", "480x270"],
+        [sys.executable, "-m", "adamo_vh", *arguments, "--resolution", "160x90"],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
@@ -182,12 +182,10 @@ def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
     assert read_result(folder) is None
     assert adamo_vh.replay_episode(folder).mismatches == ()
     resumed = adamo_vh.resume_episode(folder)
-    assert resumed.steps == 24
-    straight = adamo_vh.run_episode(
-        "Look around", model=f"scripted:{script}", resolution=(480, 270)
-    )
+    assert resumed.steps == 12
+    straight = adamo_vh.run_episode("Look around", model=f"scripted:{script}", resolution=(160, 90))
     assert resumed.state_hash == straight.state_hash
-    assert [act.step for act in read_trajectory(folder).acts] == list(range(1, 25))
+    assert [act.step for act in read_trajectory(folder).acts] == list(range(1, 13))
     assert adamo_vh.replay_episode(folder).mismatches == ()
     with pytest.raises(RecordError, match="has ended"):
         adamo_vh.resume_episode(folder)

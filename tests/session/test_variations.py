@@ -28,7 +28,7 @@ from adamo_vh.session.variations import (
     variation_of,
 )
 
-SMALL = (320, 180)
+SMALL = (160, 90)
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +41,7 @@ def seventh() -> Iterator[adamo_vh.World]:
 # --- proven ---------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "number"), [("s1", 1002), ("s2", 2)])
 def test_what_comes_with_the_package_is_proven(scene: str, number: int) -> None:
     """A sample; `python tools/variations.py --again` proves all of it."""

@@ -68,6 +68,7 @@ class BuiltinEngine:
         )
         """The one body."""
         self._happenings = Happenings(self._world, self.body)
+        self._known_state: tuple[object, WorldState] | None = None
 
     @property
     def scene(self) -> SceneInfo:
@@ -137,6 +138,14 @@ class BuiltinEngine:
     @in_turn
     def state(self) -> WorldState:
         """The whole truth, as plain data."""
+        world = self._world
+        # Every answer of the action server asks for it several times.
+        key = (world.data.qpos.tobytes(), self.body.stance, frozenset(world.absent))
+        if self._known_state is None or self._known_state[0] != key:
+            self._known_state = (key, self._state())
+        return self._known_state[1]
+
+    def _state(self) -> WorldState:
         held = self.body.stance.held
         supports = physics.supports(self._world, held)
         objects = tuple(

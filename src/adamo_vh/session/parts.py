@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
 from typing import TypedDict
 
@@ -50,20 +51,25 @@ class Parts(TypedDict, total=False):
 
 def describe(config: EpisodeConfig, model: Model, world: World, parts: Parts) -> Manifest:
     """The manifest of an episode that is about to begin."""
-    versions = {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}}
     now = datetime.now(UTC).isoformat(timespec="seconds")
     who, tagger = model.info, parts.get("labeling")
     return Manifest(
         config,
         who.name,
         who.kind,
-        versions,
+        _versions(),
         now,
         world.state(),
         who.capabilities,
         engine=own_engine(world) if parts.get("engine") else "",
         labeling="" if tagger is None else type(tagger).__name__,
     )
+
+
+@cache
+def _versions() -> Mapping[str, str]:
+    """What an episode is played with."""
+    return {"python": platform.python_version(), **{name: version(name) for name in _REPORTED}}
 
 
 def capped(parts: Parts, cap: Budget | None) -> Parts:
