@@ -7,14 +7,21 @@ from dataclasses import replace
 from pathlib import Path
 
 import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
 
 from adamo_vh.analysis.study_json import study_json
 from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.terminal import complain, line, put_json, say
 from adamo_vh.errors import ConfigError
+from adamo_vh.readable import readable
 from adamo_vh.report.page import write_page
 from adamo_vh.report.study.figures import check_plotting
+from adamo_vh.report.study.material import Material
+from adamo_vh.report.study.section import OTHER_TASKS, REPEAT
 from adamo_vh.report.study.source import Pages, links, source_of
+from adamo_vh.report.study.table import Cell
 from adamo_vh.report.study.writing import write_report
 from adamo_vh.study.store import is_study, read_outcomes, read_planned
 
@@ -87,6 +94,7 @@ def _write_report(
         sources.append(replace(source, pages=found))
     title = study.name or names[0] if len(folders) == 1 else " and ".join(names)
     page, *beside = write_report(title, sources, out, figures)
+    _print_headline(Material.of(title, sources))
     for source in sources:
         line("study", f"{source.name}: {len(source.outcomes)} of {source.planned} episodes")
     line("report", str(page))
@@ -95,6 +103,18 @@ def _write_report(
         f"{len(beside)} files: Markdown, LaTeX, CSV" + (", figures" * (figures is not None)),
     )
     return {key: problem for source in sources for key, problem in source.damaged.items()}
+
+
+def _print_headline(material: Material) -> None:
+    table = Table("model", "n", "completion", "strict", REPEAT, OTHER_TASKS, box=SIMPLE_HEAD)
+    for setting in material.settings:
+        row = material.mean(setting)
+        assert row is not None
+        found = row.figures
+        cells = (found.completion.mean, found.strict.mean, found.completion.repeat)
+        shown = (Cell(value, "share").text for value in (*cells, found.completion.task))
+        table.add_row(readable(material.name(setting)), str(found.n), *shown)
+    Console().print(table)
 
 
 def study_names(folders: Sequence[Path]) -> tuple[str, ...]:
