@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import json
 import random
+import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -259,6 +260,8 @@ def main() -> None:
                     "answer": outcome.answer,
                 }
             )
+            if len(rows) % 100 == 0:
+                print(f"{len(rows)} of {len(made)}", file=sys.stderr, flush=True)
             if not arguments.json and (false or (case.condition and not met)):
                 sign = "FALSE" if false else "MISS "
                 cell = f"{case.scene} {case.labeling} {case.profile}"
