@@ -134,7 +134,8 @@ def _identity(goal: Goal, index: int, jobs: list[Job], memory: Memory, account: 
         opaque = [j.tag for j in jobs if class_of(j.tag) is None and j.tag not in unsure]
         if unsure:
             account.open_ended = True
-            account.doubts.append(f"I am not sure that {_and(unsure)} is {target.text}.")
+            is_or_are = "is" if len(unsure) == 1 else "are"
+            account.doubts.append(f"I am not sure that {_and(unsure)} {is_or_are} {target.text}.")
         if opaque and (target.classes or target.by_looks):
             account.open_ended = True
             account.doubts.append(f"By the looks I took {_and(opaque)} for {target.text}.")

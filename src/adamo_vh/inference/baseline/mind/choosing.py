@@ -27,6 +27,7 @@ from adamo_vh.inference.baseline.tags import parts_of
 _SURE, _LIKELY, _AT_ALL = 0.5, 0.3, 0.12
 _MEMBER = 0.5
 """A thing that fits at least so well belongs to a group."""
+_ALMOST = 0.8
 
 
 def needed_fit(stage: Stage, description: Description | None = None) -> float:
@@ -64,7 +65,7 @@ def targets(goal: Goal, index: int, memory: Memory, stage: Stage) -> list[str] |
         best = extreme(goal.target, free, memory)
         return best or (None if not over else [])
     if goal.target.every:
-        members = _members(goal.target, free)
+        members = _members(goal.target, free, over)
         wanted = len(goal.target.ids) or goal.target.count or 0
         complete = len(members) >= wanted
         return members if over or (members and complete) else None
@@ -116,9 +117,13 @@ def _is_single_class(goal: Goal) -> bool:
     return bool(goal.target.classes) and not goal.target.ids and not goal.target.every
 
 
-def _members(description: Description, fits: dict[str, float]) -> list[str]:
+def _members(description: Description, fits: dict[str, float], over: bool) -> list[str]:
+    """Those that belong to a group: also what fits nearly as well as the best of it."""
     ordered = sorted(fits, key=lambda tag: (-fits[tag], tag))
-    members = [tag for tag in ordered if fits[tag] >= _MEMBER]
+    least = min(_MEMBER, max(_LIKELY, _ALMOST * fits[ordered[0]])) if ordered else _MEMBER
+    if description.count:  # as many as were said, once all was looked at
+        least = _LIKELY if over else _MEMBER
+    members = [tag for tag in ordered if fits[tag] >= least]
     if description.spared:
         return members[: -description.spared]
     return members[: description.count] if description.count else members

@@ -157,6 +157,7 @@ _SHADING = 0.1
 _READABLE_PX = 600
 """Pixels from which missing print means something."""
 _PRINT_WEIGHT = 0.7
+_PLAIN_PX, _PLAIN_WEIGHT = 150, 2.0
 _WORD_WEIGHT = 5.0
 _LEAST_PIXELS = 30
 """A thing with fewer is judged by its volume alone."""
@@ -177,6 +178,7 @@ def classify(tag: str, volume_cm3: float, sight: Sight | None) -> Beliefs:
         if not sight.cut and sight.misfits:
             misfit = misfit + np.array([sight.misfits.get(name, 0.0) for name in usual.names])
         misfit = misfit + _colour_misfit(sight) + _print_misfit(sight) - _named(sight)
+        misfit = misfit + _plain_misfit(sight)
     weights = np.exp(-misfit)
     total = float(weights.sum()) or 1.0
     return dict(zip(usual.names, (weights / total).tolist(), strict=True))
@@ -238,6 +240,14 @@ def _print_misfit(sight: Sight) -> Floats:
     expected = 0.1 + 0.8 * _usual().label
     likely = printed * expected + (1 - printed) * (1 - expected * 0.7)
     return np.asarray(-_PRINT_WEIGHT * np.log(likely))
+
+
+def _plain_misfit(sight: Sight) -> Floats:
+    """A label differs from what it is on: a thing of one vivid colour all over has none."""
+    vivid = [share for colour, share in sight.colours.items() if colour not in _VIVID]
+    plain = min(max((max(vivid, default=0.0) - 0.75) / 0.15, 0.0), 1.0)
+    enough = sight.pixels >= _PLAIN_PX
+    return np.asarray(_PLAIN_WEIGHT * plain * enough * _usual().label)
 
 
 def _named(sight: Sight) -> Floats:
