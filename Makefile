@@ -2,6 +2,7 @@
 # Settings: PYTHON=/path/to/python3.12   WORKERS=2   PYTEST_FLAGS="-k drop"
 
 VENV := .venv
+EXTRAS := .venv-extras
 BIN := $(VENV)/bin
 WORKERS ?= 2
 PYTEST_FLAGS ?=
@@ -15,13 +16,13 @@ export PYTHON
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all check format docs bench venv clean
+.PHONY: help demo test test-all test-extras check format docs bench venv clean
 # Two set-ups at once would write to the same environment.
 .NOTPARALLEL:
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /|/' | \
-		while IFS='|' read -r name text; do printf '  make %-9s %s\n' "$$name" "$$text"; done
+		while IFS='|' read -r name text; do printf '  make %-11s %s\n' "$$name" "$$text"; done
 
 demo: $(VENV)/.package $(VENV)/.gl ## Watch the built-in baseline carry out an instruction
 	@rm -rf $(DEMO)
@@ -30,10 +31,13 @@ demo: $(VENV)/.package $(VENV)/.gl ## Watch the built-in baseline carry out an i
 	@find $(CURDIR)/$(DEMO) -name '*.html' -exec printf '\nOpen in a browser: %s\n' {} +
 
 test: $(VENV)/.dev $(VENV)/.gl ## Run the tests, without the slow ones
-	@$(BIN)/pytest -n $(WORKERS) -m "not slow" $(PYTEST_FLAGS)
+	@$(BIN)/pytest -n $(WORKERS) -m "not slow and not extras" $(PYTEST_FLAGS)
 
 test-all: $(VENV)/.dev $(VENV)/.gl ## Run all tests
-	@ADAMO_VH_EXPLORE=1 $(BIN)/pytest -n $(WORKERS) $(PYTEST_FLAGS)
+	@ADAMO_VH_EXPLORE=1 $(BIN)/pytest -n $(WORKERS) -m "not extras" $(PYTEST_FLAGS)
+
+test-extras: $(EXTRAS)/.extras ## Run the tests of large extras, in an environment of their own
+	@$(EXTRAS)/bin/pytest -m extras $(PYTEST_FLAGS)
 
 check: $(VENV)/.dev ## Formatting, lint, types, layers and docs, as CI does
 	@failed=; for gate in "ruff format --check ." "ruff check ." "mypy" "lint-imports --no-logo" "mkdocs build --quiet"; do \
@@ -57,7 +61,7 @@ bench: $(VENV)/.package $(VENV)/.gl ## Measure speed; each script prints one JSO
 venv: $(VENV)/.dev ## Only set up .venv, with the tools for tests and checks
 
 clean: ## Remove the environment, caches and demo runs; other runs stay
-	rm -rf $(VENV) .cache .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(EXTRAS) .cache .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 	rm -rf build dist $(DEMO)
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
@@ -69,6 +73,11 @@ $(VENV)/.package: pyproject.toml
 $(VENV)/.dev: pyproject.toml
 	@tools/setup.sh dev
 	@touch $@ $(VENV)/.package
+
+$(EXTRAS)/.extras: pyproject.toml
+	@VENV=$(EXTRAS) tools/setup.sh extras
+	@VENV=$(EXTRAS) tools/setup.sh gl
+	@touch $@
 
 $(VENV)/.gl: | $(VENV)/.package
 	@tools/setup.sh gl

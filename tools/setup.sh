@@ -1,7 +1,8 @@
 #!/bin/sh
-# Sets up what `make` needs, once. Usage: tools/setup.sh package|dev|gl
+# Sets up what `make` needs, once. Usage: tools/setup.sh package|dev|extras|gl
 #   package  .venv with ADAMO and its libraries
 #   dev      the same, with the tools for tests and checks
+#   extras   with the large extras, and what their tests need
 #   gl       a software OpenGL to draw with, where there is none
 # System packages are installed through apt, and only as root or with a sudo that asks nothing.
 set -eu
@@ -85,7 +86,7 @@ make_venv() {
 install_package() {
     make_venv
     say "Installing ADAMO into $venv (once; about a minute)"
-    quietly "$venv/bin/python" -m pip install --disable-pip-version-check --no-input -e "$1" ||
+    quietly "$venv/bin/python" -m pip install --disable-pip-version-check --no-input -e "$@" ||
         die "pip could not install ADAMO (full log: $log)." \
             "Fix: check the network and the message above, then run make again."
 }
@@ -122,6 +123,7 @@ setup_gl() {
 case "${1:-}" in
 package) install_package . ;;
 dev) install_package '.[dev]' ;;
+extras) install_package '.[cluster,sign]' hypothesis pytest ;;
 gl) setup_gl ;;
-*) die "Usage: tools/setup.sh package|dev|gl" ;;
+*) die "Usage: tools/setup.sh package|dev|extras|gl" ;;
 esac

@@ -55,6 +55,9 @@ def test_a_study_is_played_and_told_as_events(tmp_path: Path) -> None:
         (("--shard", "3/2"), "use 1/2 to 2/2"),
         (("--shard", "half"), "write I/N"),
         (("--study", "nature"), "or a TOML file"),
+        (("--executor", "slurm"), "use local or ray"),
+        (("--shared", "/tmp"), "for --executor ray"),
+        (("--cluster", "127.0.0.1:1"), "for --executor ray"),
     ],
 )
 def test_what_is_wrong_is_told_before_anything_starts(

@@ -8,6 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.cli.process import walk
+
+from adamo_vh.benchmark.tasks.reading import read_task
 
 GOOD = """
 id = "CUP"
@@ -59,3 +62,25 @@ def test_a_wrong_file_is_one_line(tmp_path: Path, text: str, told: str) -> None:
     code, out, err = run("tasks", "check", str(path))
     assert (code, out) == (2, "")
     assert told in err and len(err.strip().splitlines()) == 1
+
+
+def test_tasks_are_generated_into_files(tmp_path: Path) -> None:
+    draw = ("tasks", "generate", "--seed", "31", "--count", "1", "--scene", "s1", "--random", "1")
+    told, no_count, no_split, no_scene = walk(
+        [
+            [*draw, "--json"],
+            ["tasks", "generate", "--count", "0"],
+            ["tasks", "generate", "--split", "train"],
+            ["tasks", "generate", "--scene", "s9"],
+        ],
+        cwd=tmp_path,
+    )
+    assert told.code == 0, told.all
+    (row,) = json.loads(told.out)["tasks"]
+    task = read_task(tmp_path / row["file"])
+    assert (row["id"], row["file"]) == ("DEV-31-001", "tasks/dev-31/DEV-31-001.toml")
+    assert (task.prompt, list(task.scenes)) == (row["prompt"], row["scenes"])
+    assert row["computed"]["total"] == task.computed.total
+    assert (no_count.code, "use 1 to 1000" in no_count.err) == (2, True)
+    assert (no_split.code, "use dev or test" in no_split.err) == (2, True)
+    assert (no_scene.code, "no scene 's9'" in no_scene.err) == (2, True)

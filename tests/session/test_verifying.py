@@ -13,11 +13,15 @@ from tests.keys import key_file
 from adamo_vh.episode.result import read_result
 from adamo_vh.episode.sealing import sign_run, write_result
 from adamo_vh.errors import RecordError
+from adamo_vh.inference.model import Reply
+from adamo_vh.inference.players.random import RandomModel
+from adamo_vh.inference.players.wrapper import Wrapped
 from adamo_vh.record.run_folder import EVENTS, MANIFEST, RESULT
 from adamo_vh.record.signing import Signer, fingerprint
+from adamo_vh.record.termination import Limits
 from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.session.runs import run_episode
+from adamo_vh.session.runs import resume_episode, run_episode
 from adamo_vh.session.verifying import verify_run
 
 OLD = Path(__file__).resolve().parents[1] / "data" / "format_1" / "s1-sem-paper-T4"
@@ -120,3 +124,76 @@ def test_an_episode_that_has_not_ended_is_told(copy: Path) -> None:
     (copy / RESULT).unlink()
     (problem,) = verify_run(copy, replayed=False).problems
     assert problem.startswith("result.json is missing")
+
+
+class _Stops:
+    """Ends an episode in the middle, as a kill does."""
+
+    def __init__(self, after: int) -> None:
+        self.left = after
+
+    def __call__(self, *asked: Any) -> Reply:
+        ask, messages, tools, sampling = asked
+        self.left -= 1
+        if self.left < 0:
+            raise KeyboardInterrupt
+        reply: Reply = ask(messages, tools, sampling)
+        return reply
+
+
+def test_an_episode_that_was_gone_on_with_is_what_its_result_says(
+    tmp_path: Path, engine: BuiltinEngine
+) -> None:
+    run = tmp_path / "run"
+    limits = Limits(max_steps=5)
+    settings: dict[str, Any] = {"task": "T1", "resolution": "160x90", "limits": limits}
+    with pytest.raises(KeyboardInterrupt):
+        run_episode(model=Wrapped(RandomModel(1), _Stops(3)), engine=engine, out=run, **settings)
+    assert verify_run(run, engine=engine).problems[0].startswith("result.json is missing")
+    resume_episode(run, engine=engine, model=RandomModel(1))
+    found = verify_run(run, engine=engine)
+    assert (found.problems, len(found.digest)) == ((), 64)
+
+
+def test_a_variation_is_sealed_with_its_scene(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    run_episode(
+        task="T1",
+        model="random:1",
+        resolution="160x90",
+        variation=1,
+        out=run,
+        limits=Limits(max_steps=3),
+    )
+    found = verify_run(run)
+    assert found.problems == ()
+    result = read_result(run)
+    assert result is not None and result.seal is not None
+    assert set(result.seal.files) == {"manifest.json", "events.jsonl", "scene.toml"}
+    path = run / "scene.toml"
+    path.write_text(path.read_text() + "\n# brighter\n")
+    (problem,) = verify_run(run, replayed=False).problems
+    assert problem == "scene.toml was changed after the result was written"
+    path.unlink()
+    (problem,) = verify_run(run, replayed=False).problems
+    assert problem == "scene.toml is missing"
+
+
+def test_a_script_is_sealed_too(tmp_path: Path, engine: BuiltinEngine) -> None:
+    script, run = tmp_path / "said.json", tmp_path / "run"
+    script.write_text('[{"tool": "Walk", "args": {"x": 0, "y": -2, "z": 0}}]')
+    model = f"scripted:{script}"
+    run_episode(task="T1", model=model, resolution="160x90", engine=engine, out=run)
+    assert verify_run(run, engine=engine).problems == ()
+    (run / "script.json").write_text("[]")
+    (problem,) = verify_run(run, replayed=False).problems
+    assert problem == "script.json was changed after the result was written"
+
+
+def test_an_engine_of_ones_own_is_asked_for(copy: Path, engine: BuiltinEngine) -> None:
+    told = json.loads((copy / MANIFEST).read_text())
+    (copy / MANIFEST).write_text(json.dumps({**told, "engine": "MyEngine"}))
+    _resealed(copy)
+    (problem,) = verify_run(copy).problems
+    assert "cannot be executed again" in problem and "hand it in again" in problem
+    assert verify_run(copy, engine=engine).problems == ()

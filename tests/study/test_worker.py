@@ -18,10 +18,8 @@ from adamo_vh.study.worker import Player, Pulse, Setup
 
 
 def _reports(folder: Path, *episodes: Planned) -> list[Report]:
-    heard: list[Report] = []
-    player = Player(Setup(folder), heard.append)
-    for planned in episodes:
-        player.play(planned)
+    player = Player(Setup(folder))
+    heard = [player.play(planned) for planned in episodes]
     assert not player.hangs
     return heard
 
@@ -68,7 +66,7 @@ def test_an_episode_without_a_sign_of_life_is_noticed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "_SILENT_S", 0.0)
-    player = Player(Setup(tmp_path), lambda report: None)
+    player = Player(Setup(tmp_path))
     assert not player.hangs
     player._pulses["x"] = Pulse()
     assert player.hangs

@@ -6,12 +6,15 @@ import re
 import tomllib
 from collections.abc import Sequence
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.errors import ConfigError
+
+if TYPE_CHECKING:
+    from adamo_vh.study.cluster import Cluster
 
 _WHOLE = ("tokens", "calls")
 """Caps that are counts."""
@@ -101,6 +104,23 @@ def _value(text: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except (tomllib.TOMLDecodeError, RecursionError):
         return text.strip()
+
+
+def read_cluster(executor: str, address: str, shared: str) -> Cluster | None:
+    """The cluster to play on; None for this machine.
+
+    Raises:
+        ConfigError: There is no such executor, or it is told of a cluster and needs none.
+    """
+    if executor == "ray":
+        from adamo_vh.study.cluster import Cluster
+
+        return Cluster(address, shared)
+    if executor != "local":
+        raise ConfigError(f"--executor {executor!r}: use local or ray.")
+    if address or shared:
+        raise ConfigError("--cluster and --shared are for --executor ray; add it.")
+    return None
 
 
 def read_shard(text: str) -> tuple[int, int]:

@@ -58,8 +58,27 @@ def bench(
         typer.Option(help="A further setting to vary, e.g. k=4,6,10,50; may be repeated."),
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(help="Processes; as many as cores, at most 4, by default.")
+        int | None,
+        typer.Option(help="Processes; as many as cores by default, on one machine at most 4."),
     ] = None,
+    executor: Annotated[
+        str, typer.Option(help="Where to play: local, or ray for the machines of a cluster.")
+    ] = "local",
+    cluster: Annotated[
+        str,
+        typer.Option(
+            help="With ray: address of the cluster, HOST:PORT; the one that Ray finds by default.",
+            show_default=False,
+        ),
+    ] = "",
+    shared: Annotated[
+        str,
+        typer.Option(
+            help="With ray: where machines publish episodes, a folder that all see or a URL for "
+            "fsspec; the study's folder by default.",
+            show_default=False,
+        ),
+    ] = "",
     in_flight: Annotated[
         int | None,
         typer.Option(help="Episodes at once in each; 1, or 16 for remote models, by default."),
@@ -111,10 +130,17 @@ def bench(
 ) -> None:
     """Play a study: tasks x scenes x labelings x models x ...; the same command again goes on."""
     from adamo_vh.cli.bench import play_and_show
-    from adamo_vh.cli.settings import axes_of, pairs, read_budget, read_shard, values_of
+    from adamo_vh.cli.settings import (
+        axes_of,
+        pairs,
+        read_budget,
+        read_cluster,
+        read_shard,
+        values_of,
+    )
     from adamo_vh.cli.study_forecast import forecast_and_show
     from adamo_vh.study.limiter import Rates
-    from adamo_vh.study.running import Means, default_workers
+    from adamo_vh.study.running import Means
     from adamo_vh.study.study_file import read_study
 
     lists = {
@@ -130,13 +156,14 @@ def bench(
     options = {name: value for name, value in lists.items() if value is not None}
     planned = read_study(study, {**options, **values_of(setting), "axes": axes_of(axis)})
     means = Means(
-        workers=default_workers() if workers is None else workers,
+        workers=workers,
         in_flight=in_flight,
         shard=read_shard(shard),
         budget=read_budget(pairs(budget, "budget")),
         frame_cache=frame_cache,
         rates=Rates(concurrent, requests_per_minute, tokens_per_minute),
         sign=sign,
+        cluster=read_cluster(executor, cluster, shared),
     )
     if dry_run:
         forecast_and_show(planned, out, means, as_json=json)

@@ -16,7 +16,7 @@ from adamo_vh.cognition.budget import Budget
 from adamo_vh.readable import readable
 from adamo_vh.study.outlook import Outlook, outlook
 from adamo_vh.study.plan import Planned, Study, plan
-from adamo_vh.study.running import Means, default_in_flight, ordered, sharded
+from adamo_vh.study.running import Means, default_in_flight, default_workers, ordered, sharded
 from adamo_vh.study.store import is_study, read_outcomes
 
 
@@ -28,7 +28,7 @@ def forecast_and_show(study: Study, out: Path | None, means: Means, *, as_json: 
         done = {one.key for one in read_outcomes(out)[0] if one.is_scored}
     left = [one for one in mine if one.key not in done]
     in_flight = means.in_flight or default_in_flight(study.models)
-    ahead = outlook(left, means.workers, in_flight)
+    ahead = outlook(left, means.workers or default_workers(), in_flight)
     warning = _too_little(ahead, means.budget)
     if as_json:
         put_json(_json(mine, len(done), ahead, warning))

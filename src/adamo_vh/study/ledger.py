@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.analysis.outcome import Outcome
@@ -63,6 +64,18 @@ def check_caps(budget: Budget) -> None:
             "A study has no budget of seconds: cap tokens, usd or calls, or each episode by "
             "--set budget.seconds=..."
         )
+
+
+class Purse(Protocol):
+    """Is asked before a study spends anything."""
+
+    def reserve(self, episode: str, most: Amount) -> int:
+        """Reserve what a call may take; see `StudyLedger.reserve`."""
+        ...
+
+    def settle(self, number: int, took: Amount) -> None:
+        """Put what a call took in place of what was reserved for it."""
+        ...
 
 
 class StudyLedger:
@@ -211,7 +224,7 @@ def _is_alive(pid: int) -> bool:
     return True
 
 
-def budgeted(model: Model, uri: str, episode: str, ledger: StudyLedger) -> Model:
+def budgeted(model: Model, uri: str, episode: str, ledger: Purse) -> Model:
     """A model that asks a ledger before every call, and is not asked if the call does not fit.
 
     Args:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from uuid import uuid4
 
 from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.errors import ConfigError, RecordError
-from adamo_vh.files import make_folder, naming
-from adamo_vh.record.run_folder import LOCK, FolderLock
+from adamo_vh.record.run_folder import FolderLock
 from adamo_vh.record.signing import Signer
 from adamo_vh.study.plan import Planned, Study
+from adamo_vh.study.publishing import copy_whole
 from adamo_vh.study.store import Store, episode_folder, gathered, read_outcomes, read_planned
 
 
@@ -79,16 +77,7 @@ def _taken(store: Store, part: Path, outcome: Outcome) -> bool:
         return False
     if mine is not None and not outcome.is_scored:
         return False
-    there = episode_folder(store.folder, outcome.key)
-    half = there.parent / f".{uuid4().hex[:12]}.part"
-    with naming("written", there):
-        make_folder(there.parent)
-        shutil.copytree(
-            episode_folder(part, outcome.key), half, ignore=shutil.ignore_patterns(LOCK)
-        )
-        if there.exists():
-            shutil.rmtree(there)
-        half.replace(there)
+    copy_whole(episode_folder(part, outcome.key), episode_folder(store.folder, outcome.key))
     store.add(outcome)
     return True
 

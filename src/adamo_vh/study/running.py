@@ -15,6 +15,8 @@ from adamo_vh.record.signing import Signer
 from adamo_vh.session.builtin import check_scene
 from adamo_vh.session.forecasting import check_price
 from adamo_vh.session.minds import model_of
+from adamo_vh.study.cluster import Cluster, RayExecutor
+from adamo_vh.study.executor import Executor
 from adamo_vh.study.ledger import StudyLedger, check_caps
 from adamo_vh.study.limiter import Rates
 from adamo_vh.study.local import LocalExecutor
@@ -34,8 +36,8 @@ _MOST_IN_FLIGHT = 256
 class Means:
     """What a study is played with; nothing of it changes what comes out."""
 
-    workers: int = 1
-    """Processes."""
+    workers: int | None = 1
+    """Processes; None for as many as cores, on this machine at most 4."""
     in_flight: int | None = None
     """Episodes at once in each; None for 1, or 16 if a model is remote."""
     shard: tuple[int, int] = (1, 1)
@@ -49,11 +51,13 @@ class Means:
 
     sign: Path | None = None
     """Private key that signs every result and the chain of all; see `Signer`."""
+    cluster: Cluster | None = None
+    """The machines that play; None for this one alone."""
 
     def __post_init__(self) -> None:
         """Refuse what is nothing to play with."""
         check_caps(self.budget)
-        if not 1 <= self.workers <= _MOST_WORKERS:
+        if self.workers is not None and not 1 <= self.workers <= _MOST_WORKERS:
             raise ConfigError(f"workers is {self.workers}: use 1 to {_MOST_WORKERS}.")
         if self.in_flight is not None and not 1 <= self.in_flight <= _MOST_IN_FLIGHT:
             raise ConfigError(f"in-flight is {self.in_flight}: use 1 to {_MOST_IN_FLIGHT}.")
@@ -103,11 +107,19 @@ def run_study(
         in_flight = means.in_flight or default_in_flight(study.models)
         StudyLedger(folder, means.budget).begin(store.outcomes.values())
         setup = Setup(folder.absolute(), means.frame_cache, means.budget, means.rates)
-        executor = LocalExecutor(setup, min(means.workers, len(left)), in_flight)
+        executor = _executor(setup, means, in_flight, len(left))
         stack.callback(executor.close)
         supervisor = Supervisor(store, executor, tally)
         watcher = stack.enter_context(closing(watch(tally, supervisor)))
         return Played(supervisor.run(left, watcher), tally)
+
+
+def _executor(setup: Setup, means: Means, in_flight: int, left: int) -> Executor:
+    """What plays the episodes that are left."""
+    if means.cluster is not None:
+        return RayExecutor(setup, means.cluster, means.workers, in_flight, min(left, _MOST_WORKERS))
+    workers = default_workers() if means.workers is None else means.workers
+    return LocalExecutor(setup, min(workers, left), in_flight)
 
 
 def sharded(episodes: Sequence[Planned], shard: tuple[int, int]) -> Sequence[Planned]:

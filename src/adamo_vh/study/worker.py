@@ -6,7 +6,6 @@ import os
 import threading
 import time
 import warnings
-from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
@@ -27,13 +26,13 @@ from adamo_vh.errors import (
 )
 from adamo_vh.inference.model import Model
 from adamo_vh.inference.registry import is_remote
-from adamo_vh.inference.remote.gate import through
+from adamo_vh.inference.remote.gate import Gate, through
 from adamo_vh.observation import Frame
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Event
 from adamo_vh.session.minds import model_of
 from adamo_vh.study.executor import Failed, Finished, Noted, Report
-from adamo_vh.study.ledger import StudyLedger, budgeted
+from adamo_vh.study.ledger import Purse, StudyLedger, budgeted
 from adamo_vh.study.limiter import LIMITS, Limiter, Rates
 from adamo_vh.study.plan import Planned
 from adamo_vh.study.playing import play
@@ -84,19 +83,21 @@ class Pulse:
 class Player:
     """Plays episodes in this process and reports what became of each."""
 
-    def __init__(self, setup: Setup, report: Callable[[Report], None]) -> None:
+    def __init__(
+        self, setup: Setup, *, purse: Purse | None = None, gate: Gate | None = None
+    ) -> None:
         """Prepare; engines are made when they are needed.
 
         Args:
             setup: The study.
-            report: Is told of the end of each episode, from any thread.
+            purse: Keeps its budget; by default a file in its folder.
+            gate: Keeps the pace of its providers; by default a file in its folder.
         """
         self._setup = setup
-        self._report = report
         self._engines = Engines()
         self._frames = FrameCache() if setup.frame_cache else None
-        self._limiter = Limiter(setup.folder / LIMITS, setup.rates)
-        self._ledger = StudyLedger(setup.folder, setup.budget)
+        self._gate = gate or Limiter(setup.folder / LIMITS, setup.rates)
+        self._purse = purse or StudyLedger(setup.folder, setup.budget)
         self._pulses: dict[str, Pulse] = {}
 
     @property
@@ -105,11 +106,11 @@ class Player:
         now = time.monotonic()
         return any(now - pulse.heard > _SILENT_S for pulse in list(self._pulses.values()))
 
-    def play(self, planned: Planned) -> None:
-        """Play an episode; whatever happens is reported."""
+    def play(self, planned: Planned) -> Report:
+        """Play an episode; whatever happens to it is in the report. From any thread."""
         pulse = self._pulses[planned.key] = Pulse()
         try:
-            self._report(self._played(planned, pulse))
+            return self._played(planned, pulse)
         finally:
             del self._pulses[planned.key]
 
@@ -130,7 +131,7 @@ class Player:
         while True:
             try:
                 with ExitStack() as stack:
-                    stack.enter_context(through(self._limiter))
+                    stack.enter_context(through(self._gate))
                     engine = stack.enter_context(self._engines.lent(planned.config))
                     outcome = play(
                         self._setup.folder,
@@ -157,7 +158,7 @@ class Player:
             config.model, tools=config.tool_calls, profile=config.profile, seed=config.seed
         )
         stack.callback(model.info.close)
-        return budgeted(model, config.model, planned.key, self._ledger)
+        return budgeted(model, config.model, planned.key, self._purse)
 
 
 def work(pipe: Connection, setup: Setup) -> None:
@@ -182,17 +183,20 @@ def work(pipe: Connection, setup: Setup) -> None:
             os._exit(1)
 
     warnings.showwarning = lambda message, *_, **__: send(Noted(str(message)))
-    player = Player(setup, send)
+    player = Player(setup)
 
     def beat() -> None:
         while not player.hangs:
             send(Alive())
             time.sleep(BEAT_S)
 
+    def play_one(planned: Planned) -> None:
+        send(player.play(planned))
+
     threading.Thread(target=beat, daemon=True).start()
     try:
         while (planned := pipe.recv()) is not None:
-            threading.Thread(target=player.play, args=(planned,), daemon=True).start()
+            threading.Thread(target=play_one, args=(planned,), daemon=True).start()
     except (EOFError, OSError):
         os._exit(1)
     # Nothing is in flight any more; engines and connections go with the process.
