@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from functools import cache
+from types import FunctionType
 from typing import Annotated, Any, ClassVar, Protocol
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
@@ -200,7 +201,7 @@ def _description(action_type: type) -> str:
     """
     name, doc = action_name(action_type), action_type.__doc__
     if not doc or doc.startswith(f"{name}("):  # What a dataclass makes up for a missing one.
-        doc = _docstring_in_source(action_type)
+        doc = docstring_in_source(action_type)
     if not doc:
         raise ConfigError(
             f"Tool {name} has no description: give its class a docstring, which is what a model "
@@ -209,12 +210,13 @@ def _description(action_type: type) -> str:
     return inspect.cleandoc(doc).split("\n\n")[0].replace("\n", " ")
 
 
-def _docstring_in_source(action_type: type) -> str | None:
+def docstring_in_source(described: type | FunctionType) -> str | None:
+    """What stands in the source of a class or function, where Python has dropped its docstring."""
     try:
-        (found,) = ast.parse(textwrap.dedent(inspect.getsource(action_type))).body
+        (found,) = ast.parse(textwrap.dedent(inspect.getsource(described))).body
     except (OSError, TypeError, SyntaxError, ValueError):
         return None
-    return ast.get_docstring(found) if isinstance(found, ast.ClassDef) else None
+    return ast.get_docstring(found) if isinstance(found, ast.ClassDef | ast.FunctionDef) else None
 
 
 def parse(name: str, arguments: Mapping[str, Any] | None, actions: Iterable[type]) -> Any:

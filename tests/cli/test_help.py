@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import re
 from typing import Any
@@ -12,6 +13,7 @@ from typer.testing import CliRunner
 
 import adamo_vh
 from adamo_vh.cli.app import app
+from adamo_vh.cli.kept_help import keep_help
 
 ROOT = typer.main.get_command(app)
 runner = CliRunner(env={"COLUMNS": "200", "NO_COLOR": "1", "TERM": "dumb"})
@@ -28,6 +30,23 @@ def commands(group: Any, path: tuple[str, ...] = ()) -> dict[str, Any]:
 
 
 COMMANDS = commands(ROOT)
+
+
+def test_no_help_is_lost_where_docstrings_are() -> None:
+    made = [command.callback for command in app.registered_commands]
+    said = {command: command.__doc__ for command in made if command is not None}
+    try:
+        for command in said:
+            command.__doc__ = None
+        keep_help(app)
+        for info in app.registered_commands:
+            assert info.callback is not None
+            assert info.help == inspect.cleandoc(str(said[info.callback]))
+    finally:
+        for command, doc in said.items():
+            command.__doc__ = doc
+        for info in app.registered_commands:
+            info.help = None
 
 
 def test_the_commands_are_those_that_the_guide_names() -> None:

@@ -43,11 +43,27 @@ def test_a_finished_score_is_shown_whatever_else_is_lost(
 
 def test_without_its_events_a_page_still_counts(tmp_path: Path) -> None:
     played(tmp_path)
-    spoil(tmp_path / EVENTS)
+    (tmp_path / EVENTS).write_text("no JSON\n")
     page = page_of(tmp_path)
     assert "<dt>steps</dt><dd>5</dd>" in page.source
     assert "The steps could not be read." in page.text
     assert page.named("article") == []
+
+
+def test_a_damaged_line_costs_what_it_held(tmp_path: Path) -> None:
+    played(tmp_path)
+    events = tmp_path / EVENTS
+    lines = events.read_bytes().splitlines(keepends=True)
+    for number in range(len(lines)):
+        events.write_bytes(b"".join([*lines[:number], b"{spoilt\n", *lines[number + 1 :]]))
+        page = page_of(tmp_path)
+        assert f"events.jsonl, line {number + 1} is damaged" in page.text
+        assert len(page.named("article")) >= 5
+        assert "1.00" in page.text and "The tape is now next to" in page.text
+    events.write_bytes(b"".join([b"{\n", b"[]\n", *lines[2:]]))
+    assert "(1 more lines are)" in page_of(tmp_path).text
+    with pytest.raises(RecordError, match="line 1 is damaged"):
+        read_trajectory(tmp_path)
 
 
 def test_without_its_manifest_nothing_is_made_up(tmp_path: Path) -> None:

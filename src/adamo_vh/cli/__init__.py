@@ -48,6 +48,10 @@ def _run() -> int:
                     f"{os.fsencode(words).decode('utf-8', 'replace')!r} is not UTF-8 text: set "
                     "the terminal to UTF-8 (export LC_ALL=C.UTF-8), and type it again."
                 )
+        if sys.flags.optimize > 1:
+            from adamo_vh.cli.kept_help import keep_help
+
+            keep_help(app)
         code = app(standalone_mode=False)
         if code == Exit.STOPPED:
             complain("stopped; what happened so far is in the run folder")

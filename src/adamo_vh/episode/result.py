@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -216,7 +217,7 @@ def summarise(
         requests=sum(took.requests for took in answers),
         usage=sum((took.usage for took in answers), Usage()),
         cost_usd=total_cost(answers),
-        warnings=tuple(dict.fromkeys(reply.warning for reply in replies if reply.warning)),
+        warnings=_warnings(replies),
         rungs=tuple(sorted({str(reply.rung) for reply in replies if reply.rung is not None})),
         model_s=sum(reply.seconds for reply in replies),
         world_s=sum(act.world_s for act in trajectory.acts),
@@ -324,3 +325,12 @@ def _read(path: Path, record_type: type[_T], *, is_old: bool = False) -> _T:
         raise RecordError(
             f"{path}: {where or 'file'}: {first['msg']}; written by another version?"
         ) from None
+
+
+def _warnings(replies: Sequence[Reply]) -> tuple[str, ...]:
+    """What is to say of the replies, once: the same with other numbers is no news."""
+    first: dict[str, str] = {}
+    for reply in replies:
+        if reply.warning:
+            first.setdefault(re.sub(r"\d[\d,.]*", "", reply.warning), reply.warning)
+    return tuple(first.values())

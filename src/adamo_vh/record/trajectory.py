@@ -248,8 +248,13 @@ class Trajectory:
         return last if isinstance(last, Ended) else None
 
 
-def read_trajectory(folder: Path) -> Trajectory:
+def read_trajectory(folder: Path, damaged: list[str] | None = None) -> Trajectory:
     """Read a run folder; a last line that a kill cut off is left out.
+
+    Args:
+        folder: The run folder.
+        damaged: Takes what is wrong with each line that cannot be read, and these are left out:
+            for those who show a record, never for those who execute it.
 
     Raises:
         RecordError: There is no episode, or a line in the middle is damaged.
@@ -263,11 +268,12 @@ def read_trajectory(folder: Path) -> Trajectory:
     events: list[Event] = []
     for number, line in enumerate(lines[:-1], start=1):
         try:
-            text = json.dumps(upgraded_event(line, head, events)) if is_old else line
-            events.append(codec().validate_json(text))
+            told = json.dumps(upgraded_event(line, head, events)) if is_old else line
+            events.append(codec().validate_json(told))
         except (ValueError, TypeError, LookupError) as error:
             problem = error.errors()[0]["msg"] if isinstance(error, ValidationError) else str(error)
-            raise RecordError(
-                f"{path}, line {number} is damaged: {problem}; written by another version?"
-            ) from None
+            text = f"{path}, line {number} is damaged: {problem}; written by another version?"
+            if damaged is None:
+                raise RecordError(text) from None
+            damaged.append(text)
     return Trajectory(tuple(events))

@@ -64,21 +64,29 @@ def write_page(folder: Path) -> Path:
         FileError: The page cannot be written.
     """
     missing: list[str] = []
+    damaged: list[str] = []
+
+    def miss(text: str) -> None:
+        # A page is passed on; where it was made is nobody's business.
+        line = text.replace(f"{folder}{os.sep}", "")
+        missing.append(line.replace(str(folder), "The folder"))
 
     def read(part: Callable[[Path], _T], otherwise: Callable[[], _T]) -> _T:
         try:
             return part(folder)
         except (RecordError, FileError) as error:
-            # A page is passed on; where it was made is nobody's business.
-            line = str(error).replace(f"{folder}{os.sep}", "")
-            missing.append(line.replace(str(folder), "The folder"))
+            miss(str(error))
             return otherwise()
 
     result = read(read_result, lambda: None)
     manifest = read_manifest(folder) if result is None else read(read_manifest, lambda: None)
+    trajectory = read(lambda path: read_trajectory(path, damaged), Trajectory)
+    if damaged:
+        more = f" ({len(damaged) - 1} more lines are)" if len(damaged) > 1 else ""
+        miss(f"{damaged[0]}{more} The steps on it are left out.")
     page = render_page(
         manifest or _recovered(result),
-        read(read_trajectory, Trajectory),
+        trajectory,
         result,
         lambda name: (folder / FRAMES / name).read_bytes(),
         missing,

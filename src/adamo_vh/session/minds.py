@@ -96,6 +96,13 @@ def is_deterministic(uri: str) -> bool:
     return False
 
 
+def lasting(uri: str) -> str:
+    """The URI of a model with the whole path of what it plays, which holds from any folder."""
+    prefix, _, rest = uri.partition(":")
+    is_path = prefix in ("replay", "cassette") and rest
+    return f"{prefix}:{Path(rest).absolute()}" if is_path else uri
+
+
 def fitting(profile: Profile, model: Model, tools: Sequence[Tool] | None = None) -> Profile:
     """The profile that a model can follow, with the tools that it is given.
 

@@ -55,7 +55,7 @@ from adamo_vh.session.bodies import (
     store_sources,
 )
 from adamo_vh.session.forecasting import check_price, forecast_episodes, refuse_early
-from adamo_vh.session.minds import fitting, opened_model, resumed_model
+from adamo_vh.session.minds import fitting, lasting, opened_model, resumed_model
 from adamo_vh.session.parts import Parts, capped, describe
 from adamo_vh.session.repeating import Again, later
 
@@ -161,19 +161,20 @@ class Session:
             # Also a probe is paid for.
             refuse_early(config, folder, cap)
         with ExitStack() as stack:
+            # The world first: a wrong scene or task is told before a model is asked anything.
+            world = opened(stack, config, engine)
+            if engine is not None:
+                config = as_said(config, world)
+            check_task(config, world)
             mind = opened_model(stack, config, model)
             if model is None:
                 check_price(config.model, config.budget, mind)
                 check_price(config.model, cap or Budget(), mind)
             config = replace(
                 config,
-                model=mind.info.name if model is not None else config.model,
+                model=mind.info.name if model is not None else lasting(config.model),
                 profile=fitting(config.profile, mind, tools),
             )
-            world = opened(stack, config, engine)
-            if engine is not None:
-                config = as_said(config, world)
-            check_task(config, world)
             manifest = describe(config, mind, world, parts)
             writer = None
             if folder is not None:
