@@ -1,7 +1,7 @@
 """What a note carries over to the next turn, in words: what the messages will not tell again.
 
 A note ends with a sentence in brackets, e.g. ``(Memory, step 3: wish 1: Plate_57 done; wish 2
-means most likely 8 (62 %), perhaps 37 (41 %))``. Only what is new is said. Now and then a note says
+means 8 (62 %), 37 (41 %))``. Only what is new is said. Now and then a note says
 all of it, so that nothing is lost when older messages leave the prompt.
 """
 
@@ -49,7 +49,6 @@ _STAND = re.compile(rf"{_POINT} facing ({_NUMBER}) deg")
 _JOB = re.compile(r"(\S+) (to do|done|given up)(?: after (\d+) tries)?")
 _KEPT_FITS = 6
 _LEAST_FIT = 0.08
-_LIKELY = 0.5
 _FITS = re.compile(r"(.+) (\d{1,3}) means (.+)")
 _FIT = re.compile(r"(\S+) \((\d{1,3}) %\)")
 
@@ -128,8 +127,8 @@ def _apply_words(head: str, rest: str, memory: Memory) -> None:
     elif head == "came from":
         for tag, *numbers in _FROM.findall(rest):
             memory.came_from[tag] = _vec(numbers)
-    elif head == "seen from":
-        for tag, metres in re.findall(rf"(\S+) ({_NUMBER}) m", rest):
+    elif head == "seen from m":
+        for tag, metres in re.findall(rf"(\S+) ({_NUMBER})", rest):
             memory.seen_m[tag] = float(metres)
     else:
         kept = {"taken for": memory.kinds, "looks": memory.looks, "rests": memory.rests}.get(head)
@@ -196,7 +195,7 @@ def write(
                                 for t in known])  # fmt: skip
     parts += _jobs(memory, before)
     parts += _fits(memory, before, groups)
-    parts += _joined("seen from", [f"{t} {memory.seen_m[t]:.1f} m" for t in distances])
+    parts += _joined("seen from m", [f"{t} {memory.seen_m[t]:.1f}" for t in distances])
     for name, kept, old in (
         ("taken for", memory.kinds, before.kinds),
         ("looks", memory.looks, before.looks),
@@ -252,19 +251,13 @@ def _fits(memory: Memory, before: Memory, groups: Collection[Slot]) -> list[str]
         kept = _kept_fits(memory, slot, slot in groups)
         old = before.fits.get(slot, {})
         changed = [
-            f"{_likelihood(fit)} {tag} ({round(fit * 100)} %)"
+            f"{tag} ({round(fit * 100)} %)"
             for tag, fit in sorted(memory.fits[slot].items(), key=lambda item: -item[1])
             if round(old.get(tag, 0.0) * 100) != round(fit * 100)
             and (tag in kept or old.get(tag, 0.0) >= _LEAST_FIT)
         ]
         parts += [f"{_SLOT[kind]} {index + 1} means {', '.join(changed)}"] if changed else []
     return parts
-
-
-def _likelihood(fit: float) -> str:
-    if fit < _LEAST_FIT:
-        return "hardly"
-    return "most likely" if fit >= _LIKELY else "perhaps"
 
 
 def _kept_fits(memory: Memory, slot: Slot, is_group: bool) -> set[str]:
