@@ -118,3 +118,17 @@ def test_questions_are_answered_by_what_is_known(text, says, never):
 def test_a_tag_has_a_name_and_a_number(tag, name, number, kind):
     assert parts_of(tag) == (name, number)
     assert class_of(tag) == kind
+
+
+def test_the_other_one_is_of_the_kind_that_was_asked_for_before():
+    former = "Pick the battery"
+    assert parts(understand("Not that one, the other one", ("30",), former)) == [
+        "Battery other but(30) hold"]  # fmt: skip
+    assert "which other one" in understand("Pick the other one", ("30",), "Pick 30").problem
+    assert parts(understand("And the glass too", ("45",), "Put it next to the plate")) == [
+        "Glass near(Plate)"]  # fmt: skip
+
+
+def test_what_is_held_can_be_let_go_though_no_list_tells_of_it():
+    room = TextRoom("Put Key_34 on the floor", held="Key_34", heading_rad=3.1)
+    assert "34" in room.run(4).on_floor()

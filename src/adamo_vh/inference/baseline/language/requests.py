@@ -88,7 +88,22 @@ def understand(instruction: str, before: tuple[str, ...] = (), former: str = "")
         plan = again
         words = ", ".join(f"'{word}' as '{meant}'" for word, meant in slips.items())
         plan = replace(plan, remarks=(*plan.remarks, f"I read {words}."))
-    return plan
+    return _others_named(plan, former, before)
+
+
+def _others_named(plan: Plan, former: str, before: tuple[str, ...]) -> Plan:
+    """Read "the other one" behind a tag without a name as the kind that was asked for before."""
+    bare = [g for g in plan.goals if g.target.other and not (g.target.classes or g.target.every)]
+    if not bare:
+        return plan
+    named = [g.target.classes for g in wishes(former.lower(), before).goals if g.target.classes]
+    if not named:
+        return Plan(problem=f"'{bare[0].target.text}' (I do not know which other one)")
+    goals = tuple(
+        replace(g, target=replace(g.target, classes=named[-1])) if g in bare else g
+        for g in plan.goals
+    )
+    return replace(plan, goals=goals)
 
 
 def _gone_on_with(former: str, text: str, before: tuple[str, ...]) -> Plan | None:
@@ -99,7 +114,7 @@ def _gone_on_with(former: str, text: str, before: tuple[str, ...]) -> Plan | Non
     )
     words = re.sub(begin, "", text).strip(" .!?")
     things = read_things(re.sub(r"[, ]+(?:too|as well|please|also|instead)$", "", words), before)
-    goals = wishes(former.lower(), ()).goals if things else ()
+    goals = wishes(former.lower(), before).goals if things else ()
     if not things or not goals:
         return None
     return Plan(tuple(replace(goals[-1], target=thing) for thing in things))

@@ -25,6 +25,8 @@ from adamo_vh.inference.baseline.sight.measures import Sight, colour_words
 from adamo_vh.inference.baseline.sight.printed import WordReader
 
 _NEVER_M = 99.0
+_HELD_CM3 = 300.0
+"""Assumed of what is held and was never listed."""
 OF_CONDITION = 99
 """The condition counts as a further question, with this number."""
 _LIKE_WOOD = ("orange", "brown", "yellow")
@@ -64,10 +66,13 @@ def recalled(prompt: Prompt, plan: Plan) -> Memory:
         searches = [*entry.searches, *[Search.NONE] * len(turn.events)]
         for event, search in zip(turn.events, searches, strict=False):
             happened(event, search, memory, plan, prompt.room)
-    judge_by_text(memory, plan)
-    memory.in_doubt = _in_doubt(plan, memory)
     if prompt.body.hand is not None:
         memory.hand = "" if prompt.body.hand == "empty" else prompt.body.hand
+    if memory.hand and memory.hand not in memory.things:  # no list tells what is held
+        held = thing_of(memory.hand, prompt.body.position, _HELD_CM3)
+        memory.things[memory.hand] = held
+    judge_by_text(memory, plan)
+    memory.in_doubt = _in_doubt(plan, memory)
     _stand(prompt, memory)
     return memory
 
