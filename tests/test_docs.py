@@ -36,3 +36,14 @@ def test_files_that_the_documentation_names_exist() -> None:
     for page in (*(ROOT / "docs").rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"):
         found = named.findall(page.read_text(encoding="utf-8"))
         assert [name for name in found if not (ROOT / name).exists()] == [], page
+
+
+def test_the_list_of_rooms_is_that_of_the_layers() -> None:
+    layers = re.search(r"^layers = \[(.*?)^\]", (ROOT / "pyproject.toml").read_text(), re.S | re.M)
+    block = re.search(r"```\n(errors .*?)```", (ROOT / "docs/architecture.md").read_text(), re.S)
+    assert layers is not None and block is not None
+    rooms = re.findall(r"\w+", layers[1])
+    there = {path.stem for path in (ROOT / "src/adamo_vh").iterdir()}
+    known = [name for name in rooms if name in there and name != "__main__"]
+    heads = [re.split(r"\s{2,}", line)[0] for line in block[1].splitlines() if line[0] != " "]
+    assert {*re.findall(r"\w+", " ".join(heads))} == {*known}
