@@ -12,6 +12,7 @@ from hypothesis import settings
 
 if TYPE_CHECKING:
     from adamo_vh.runtime.builtin import BuiltinEngine
+    from adamo_vh.session.lending import LentWorld
 
 # Set before anything imports MuJoCo, and inherited by the subprocesses that tests start.
 os.environ["ADAMO_VH_NO_REMOTE"] = "1"
@@ -45,3 +46,11 @@ def engine(s1_engine: BuiltinEngine) -> BuiltinEngine:
     """Scene S1, just reset."""
     s1_engine.reset(0)
     return s1_engine
+
+
+@pytest.fixture
+def lent(engine: BuiltinEngine) -> LentWorld:
+    """Scene S1 for one episode, whose record is that of an engine made for it."""
+    from adamo_vh.session.lending import Lender
+
+    return Lender(engine).lend()

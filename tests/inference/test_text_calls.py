@@ -250,6 +250,6 @@ HOSTILE = [
 @pytest.mark.parametrize("piece", HOSTILE)
 def test_a_long_text_takes_time_in_proportion_to_its_length(piece: str) -> None:
     for text in (piece * (64_000 // len(piece)), f"{' ' * 64_000}{piece}{' ' * 64_000}"):
-        begin = time.perf_counter()
+        begin = time.thread_time()
         read_calls(split_reasoning(text)[0], TOOLS, ())
-        assert time.perf_counter() - begin < 4.0
+        assert time.thread_time() - begin < 4.0

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +81,7 @@ def test_an_episode_can_be_scored_again_from_its_records(
     kept = read_result(folder)
     assert kept == result
     again = summarise(read_manifest(folder), read_trajectory(folder), kept.final, folder)
-    assert again == result
+    assert replace(again, seal=kept.seal) == result
 
 
 def test_a_replay_reproduces_every_hash_and_frame(
@@ -202,7 +203,7 @@ def test_an_episode_resumes_from_any_moment(
     lines = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join(lines[:kept_lines]) + lines[kept_lines][:20])
     (folder / "result.json").unlink()
-    again = adamo_vh.resume_episode(folder)
+    again = adamo_vh.resume_episode(folder, engine=engine)
     assert again.state_hash == whole.state_hash
     assert (again.completion, again.steps, again.calls) == (1.0, whole.steps, whole.calls)
     types = [json.loads(line)["type"] for line in path.read_bytes().splitlines()]

@@ -23,9 +23,10 @@ from adamo_vh.inference.model import Reply, Sampling
 from adamo_vh.record.run_folder import EVENTS, RESULT
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import LeftOut, Trajectory, read_trajectory
+from adamo_vh.session.lending import LentWorld
 from adamo_vh.session.session import Session
 
-SMALL = (480, 270)
+SMALL = (320, 180)
 PLACE: dict[str, Any] = {"x": -1.5, "y": -2.5, "z": 0.0}
 UNSURE = noted("Pick", 0.2, object="57")
 SAID = [
@@ -77,7 +78,7 @@ def test_every_kind_of_event_is_in_the_record(whole: Path) -> None:
 
 @pytest.mark.parametrize("kept", range(len(KINDS) + 1))
 def test_a_kill_between_any_two_events_loses_nothing(
-    whole: Path, tmp_path: Path, kept: int
+    whole: Path, tmp_path: Path, kept: int, lent: LentWorld
 ) -> None:
     folder = tmp_path / "run"
     shutil.copytree(whole, folder)
@@ -88,7 +89,7 @@ def test_a_kill_between_any_two_events_loses_nothing(
     (folder / EVENTS).write_bytes(b"".join(lines[:kept]) + half)
     (folder / RESULT).unlink()
     answered = len(read_trajectory(folder).thoughts)
-    after = adamo_vh.resume_episode(folder, model=Live(answered))
+    after = adamo_vh.resume_episode(folder, model=Live(answered), engine=lent)
     assert after.state_hash == before.state_hash
     assert (after.completion, after.calls) == (before.completion, before.calls)
     assert kinds(folder) == KINDS

@@ -77,8 +77,10 @@ def test_what_has_a_score_is_not_played_again(
 
 
 @pytest.mark.parametrize("planned", [BASELINE, RANDOM], ids=["baseline", "random"])
-@pytest.mark.parametrize("kept", [0, 1, 2, 3, 5, -1])
-@pytest.mark.parametrize("half_a_line", [False, True])
+@pytest.mark.parametrize(
+    ("kept", "half_a_line"),
+    [(0, True), (1, False), (2, True), (3, False), (5, True), (-1, False), (-1, True)],
+)
 def test_an_episode_that_was_killed_comes_to_the_same_end(
     undisturbed: dict[str, tuple[Path, Outcome]],
     tmp_path: Path,

@@ -22,7 +22,7 @@ RUN = "result"
 _MOST_BYTES = 50_000_000
 
 
-def write_result(folder: Path, result: EpisodeResult, recorded: Trajectory) -> None:
+def write_result(folder: Path, result: EpisodeResult, recorded: Trajectory) -> EpisodeResult:
     """Write a result into its run folder, sealed with the files that it rests on.
 
     Args:
@@ -30,12 +30,17 @@ def write_result(folder: Path, result: EpisodeResult, recorded: Trajectory) -> N
         result: What came of the episode; a seal of before is replaced.
         recorded: Its events.
 
+    Returns:
+        The result with its seal, as it was written.
+
     Raises:
         FileError: It cannot be written.
     """
     # As it will be read back, to the last digit.
     plain = json.loads(TypeAdapter(EpisodeResult).dump_json(result))
-    write_record(folder, RESULT, replace(result, seal=seal_of(folder, recorded, plain)))
+    sealed = replace(result, seal=seal_of(folder, recorded, plain))
+    write_record(folder, RESULT, sealed)
+    return sealed
 
 
 def read_plain(folder: Path) -> dict[str, Any]:

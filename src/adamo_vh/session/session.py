@@ -315,7 +315,7 @@ class Session:
         result = summarise(self.manifest, self._trajectory, final, self.folder)
         if self.folder is not None:
             try:
-                write_result(self.folder, result, self._trajectory)
+                result = write_result(self.folder, result, self._trajectory)
             except FileError as error:
                 # A full disk may take the files, never the score.
                 again = f"once that is mended: adamo-vh run --resume {self.folder}"

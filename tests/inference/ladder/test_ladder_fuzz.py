@@ -85,6 +85,6 @@ def test_a_long_text_is_read_in_proportion_to_its_length(form: Form, piece: str)
         f"{' ' * 64_000}{{}}",
         f"Action: Look{',' * 64_000}x",
     ):
-        begin = time.perf_counter()
+        begin = time.thread_time()
         form.read(text, TOOLS)
-        assert time.perf_counter() - begin < 2.0
+        assert time.thread_time() - begin < 2.0

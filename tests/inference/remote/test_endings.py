@@ -208,7 +208,7 @@ def test_no_body_breaks_the_reading_of_its_end() -> None:
 @pytest.mark.parametrize("piece", ["parsing ", "tool call ", "invalid ", "model ", "raw='", "{"])
 def test_a_long_complaint_is_read_in_proportion_to_its_length(piece: str) -> None:
     text = piece * (600_000 // len(piece))
-    begin = time.perf_counter()
+    begin = time.thread_time()
     refused_call({"error": {"message": text}}, text)
     meaning(text)
-    assert time.perf_counter() - begin < 1.0
+    assert time.thread_time() - begin < 1.0
