@@ -92,3 +92,10 @@ def test_every_cell_and_episode_has_a_line() -> None:
     rows = list(csv.DictReader(io.StringIO(comma_separated(episode_rows(of)))))
     assert [row["episode"] for row in rows] == [outcome.key for outcome in of.outcomes]
     assert {row["completion"] for row in rows} == {"0.0", "1.0"}
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(-0.0004, "0.00"), (0.0, "0.00"), (0.25, "+0.25"), (-0.25, "−0.25")]
+)
+def test_what_rounds_to_nothing_has_no_sign(value: float, text: str) -> None:
+    assert Cell(value, "share", signed=True).text == text

@@ -147,7 +147,7 @@ def _chart(material: Material, found: Mapping[Pair, Mapping[str, Difference]]) -
             for place, task in enumerate(material.tasks)
             if task in difference.tasks
         )
-        series = Series("second less first", material.tone(second), "bars", marks)
+        series = Series(material.name(second), material.tone(second), "bars", marks)
         panels.append(Panel(title, places(material.tasks), _around_zero(), (series,)))
     return Chart(
         "comparison",

@@ -81,9 +81,9 @@ class Cell:
         if not math.isfinite(value):
             return NOTHING
         written = _FORMS[self.form](abs(value))
-        if self.signed and any(digit in written for digit in "123456789"):
-            return f"{_MINUS if value < 0 else '+'}{written}"
-        return f"{_MINUS}{written}" if value < 0 else written
+        if not any(digit in written for digit in "123456789"):
+            return written  # What rounds to nothing has no sign.
+        return f"{_MINUS if value < 0 else '+' if self.signed else ''}{written}"
 
 
 @dataclass(frozen=True, slots=True)
