@@ -37,7 +37,7 @@ test-all: $(VENV)/.dev $(VENV)/.gl ## Run all tests
 	@ADAMO_VH_EXPLORE=1 $(BIN)/pytest -n $(WORKERS) -m "not extras" $(PYTEST_FLAGS)
 
 test-extras: $(EXTRAS)/.extras ## Run the tests of large extras, in an environment of their own
-	@$(EXTRAS)/bin/pytest -m extras $(PYTEST_FLAGS)
+	@$(EXTRAS)/bin/pytest -m extras $(PYTEST_FLAGS) $$(grep -rl --include="*.py" "mark\.extras" tests)
 
 check: $(VENV)/.dev ## Formatting, lint, types, layers and docs, as CI does
 	@failed=; for gate in "ruff format --check ." "ruff check ." "mypy" "lint-imports --no-logo" "mkdocs build --quiet"; do \
