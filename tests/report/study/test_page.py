@@ -55,6 +55,15 @@ def test_the_headline_stands_beside_the_papers_own(plain: Page) -> None:
         assert said in text
 
 
+def test_no_class_of_a_table_is_one_that_a_phone_hides(plain: Page) -> None:
+    (style,) = plain.raw["style"]
+    hidden = re.findall(r"\.([a-z]+) \{ display: none; \}", style)
+    assert {"wide", "narrow"} <= set(hidden)
+    for name, attributes in plain.tags:
+        if name in {"th", "td", "tr", "table"}:
+            assert not set(hidden) & set(attributes.get("class", "").split())
+
+
 def test_names_are_text_whatever_stands_in_them() -> None:
     turned = f"\u202e{HOSTILE}\x1b[31m"
     groups = (episodes(turned), episodes(f"{turned}2", profile=turned, axes={turned: turned}))
@@ -122,6 +131,7 @@ def test_chips_lead_to_pages_where_there_are_some(tmp_path: Path) -> None:
         (Cell(float("nan"), "share"), "–"),
         (Cell(-0.041, "share", signed=True), "−0.04"),
         (Cell(0.001, "share", signed=True), "0.00"),
+        (Cell(-0.001, "share"), "0.00"),
         (Cell(0.5, "share", signed=True), "+0.50"),
         (Cell(12345.6, "tokens"), "12,346"),
         (Cell(0.00123, "dollars"), "$0.0012"),

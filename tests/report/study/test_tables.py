@@ -248,6 +248,13 @@ def test_without_a_further_axis_there_are_no_ablations() -> None:
     assert section(one, "ablations") is None
 
 
+def test_models_put_together_are_told_apart_by_their_settings() -> None:
+    groups = (episodes(model, axes={"k": k}) for model in ("a", "b") for k in ("4", "50"))
+    spearman = tables(material(source("mine", *groups)))["spearman"]
+    pooled = {row.cells[0].text for row in spearman.rows if row.cells[0].text.startswith("all")}
+    assert pooled == {"all vlm models, k=4", "all vlm models, k=50"}
+
+
 @pytest.mark.parametrize(
     ("points", "line"),
     [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import fsum
 
 from adamo_vh.analysis.cells import Setting
@@ -12,7 +13,7 @@ from adamo_vh.analysis.ranks import ALL, Level, Over, RankRow, rank_of, ranks
 from adamo_vh.analysis.statistics import Rank
 from adamo_vh.benchmark import tasks as benchmark_tasks
 from adamo_vh.report.study.chart import Axis, Chart, Mark, Panel, Series, shares
-from adamo_vh.report.study.material import Material, shown_labeling
+from adamo_vh.report.study.material import Material, names, shown_labeling
 from adamo_vh.report.study.section import Section
 from adamo_vh.report.study.table import Cell, Row, Table, text
 
@@ -124,11 +125,18 @@ def _table(material: Material) -> Table:
         if one.labeling == ALL and len(material.labelings) == 1:
             continue  # It says the same again.
         found.setdefault((one.setting, one.labeling), []).append(one)
+    # Models that were put together are told apart by profile and axes, as all others are.
+    together = {
+        setting: replace(setting, model=f"all {setting.model_kind} models")
+        for setting, _ in found
+        if setting.model == ALL
+    }
+    called = names(tuple(dict.fromkeys(together.values())))
     rows = []
     for (setting, labeling), of in found.items():
         by = {(one.level, one.over): one.rank for one in of}
-        pooled = setting.model == ALL
-        name = f"all {setting.model_kind} models" if pooled else material.name(setting)
+        pooled = together.get(setting)
+        name = called[pooled] if pooled else material.name(setting)
         head = (text(name), text("all" if labeling == ALL else shown_labeling(labeling)))
         rows.append(Row((*head, *_ranks([by[column] for column in _COLUMNS]))))
     for labeling in (*([ALL] if len(material.labelings) > 1 else []), *material.labelings):
