@@ -141,21 +141,26 @@ the paper, printed | SEM | −0.53 | < 0.05 | – | – | – | – | – | – 
 """,
     "failure-classes": """
 labeling | model | scored | failed | perceptual | execution | reasoning | protocol (count) | undiagnosed (count)
-OPAQ | all together | 40 | 23 | 27.3 % | 40.9 % | 31.8 % | 1 | 0
 OPAQ | baseline | 10 | 4 | 50.0 % | 25.0 % | 25.0 % | 0 | 0
 OPAQ | openai:gpt-4o | 30 | 19 | 22.2 % | 44.4 % | 33.3 % | 1 | 0
 OPAQ | both models (paper), printed | – | – | 83.5 % | 14.2 % | – | – | –
-SEM | all together | 40 | 12 | 0.0 % | 25.0 % | 75.0 % | 4 | 0
 SEM | baseline | 10 | 1 | – | – | – | 1 | 0
 SEM | openai:gpt-4o | 30 | 11 | 0.0 % | 25.0 % | 75.0 % | 3 | 0
 SEM | both models (paper), printed | – | – | 65.8 % | 31.1 % | – | – | –
 """,
-    "failure-codes": """
+    "failure-codes-rule-based": """
 class | code | what it means | OPAQ | SEM | all | share
-perceptual | wrong object | Another object was taken in place of the one that was asked for. | 6 | 0 | 6 | 17.1 %
-execution | false claim | The agent ended too early and said that all was done. | 9 | 2 | 11 | 31.4 %
-reasoning | goal forgotten | A part of the instruction was never named nor tried. | 7 | 6 | 13 | 37.1 %
-protocol | unreadable | Replies could not be read as a call or an answer. | 1 | 4 | 5 | 14.3 %
+perceptual | wrong object | Another object was taken in place of the one that was asked for. | 2 | 0 | 2 | 40.0 %
+execution | false claim | The agent ended too early and said that all was done. | 1 | 0 | 1 | 20.0 %
+reasoning | goal forgotten | A part of the instruction was never named nor tried. | 1 | 0 | 1 | 20.0 %
+protocol | unreadable | Replies could not be read as a call or an answer. | 0 | 1 | 1 | 20.0 %
+""",
+    "failure-codes-vlm": """
+class | code | what it means | OPAQ | SEM | all | share
+perceptual | wrong object | Another object was taken in place of the one that was asked for. | 4 | 0 | 4 | 13.3 %
+execution | false claim | The agent ended too early and said that all was done. | 8 | 2 | 10 | 33.3 %
+reasoning | goal forgotten | A part of the instruction was never named nor tried. | 6 | 6 | 12 | 40.0 %
+protocol | unreadable | Replies could not be read as a call or an answer. | 1 | 3 | 4 | 13.3 %
 """,
     "calls": """
 labeling | model | Walk | Look | Pick | Drop | all tools | model calls | requests
@@ -401,18 +406,18 @@ the paper, printed | SEM | −0.53 | < 0.05 | – | – | – | – | – | – 
 """,
     "failure-classes": """
 labeling | model | scored | failed | perceptual | execution | reasoning | protocol (count) | undiagnosed (count)
-OPAQ | all together | 36 | 20 | 33.3 % | 27.8 % | 38.9 % | 2 | 0
+OPAQ | all vlm models | 36 | 20 | 33.3 % | 27.8 % | 38.9 % | 2 | 0
 OPAQ | openai:gpt-4o, k=4 | 12 | 7 | 66.7 % | 16.7 % | 16.7 % | 1 | 0
 OPAQ | openai:gpt-4o, k=50 | 12 | 3 | 0.0 % | 66.7 % | 33.3 % | 0 | 0
 OPAQ | openai:gpt-4o | 12 | 10 | 22.2 % | 22.2 % | 55.6 % | 1 | 0
 OPAQ | both models (paper), printed | – | – | 83.5 % | 14.2 % | – | – | –
-SEM | all together | 36 | 9 | 28.6 % | 28.6 % | 42.9 % | 2 | 0
+SEM | all vlm models | 36 | 9 | 28.6 % | 28.6 % | 42.9 % | 2 | 0
 SEM | openai:gpt-4o, k=4 | 12 | 1 | 100.0 % | 0.0 % | 0.0 % | 0 | 0
 SEM | openai:gpt-4o, k=50 | 12 | 4 | 50.0 % | 50.0 % | 0.0 % | 2 | 0
 SEM | openai:gpt-4o | 12 | 4 | 0.0 % | 25.0 % | 75.0 % | 0 | 0
 SEM | both models (paper), printed | – | – | 65.8 % | 31.1 % | – | – | –
 """,
-    "failure-codes": """
+    "failure-codes-vlm": """
 class | code | what it means | OPAQ | SEM | all | share
 perceptual | wrong object | Another object was taken in place of the one that was asked for. | 6 | 2 | 8 | 27.6 %
 execution | false claim | The agent ended too early and said that all was done. | 5 | 2 | 7 | 24.1 %

@@ -105,9 +105,9 @@ Perceptual: the wrong object or place, or one never found. Execution: the right 
 
 (a) the paper says 2 to 3 % of reasoning, and no counts.
 
-### Failures by code
+### Failures by code: vlm models
 
-What exactly went wrong first, over all models, with the number of failed episodes under each labeling and the share of all failures.
+What exactly went wrong first, over all models of a kind, with the number of failed episodes under each labeling and the share of all failures.
 
 | class | code | what it means | SEM | all | share |
 | --- | --- | --- | ---: | ---: | ---: |

@@ -135,7 +135,7 @@ def test_the_papers_gain_from_labels_is_the_one_it_prints(found: dict[str, Table
 
 def test_failures_are_counted_with_their_episodes() -> None:
     of = material(source("mine", episodes()))
-    codes = tables(of)["failure-codes"]
+    codes = tables(of)["failure-codes-vlm"]
     failed = [one for one in of.outcomes if one.completion == 0]
     assert sum(len(row.chips) for row in codes.rows) == len(failed)
     assert sum(row.cells[-2].value for row in codes.rows) == len(failed)  # type: ignore[misc]
@@ -146,15 +146,24 @@ def test_failures_are_counted_with_their_episodes() -> None:
             assert sum(shares) == pytest.approx(1.0)  # type: ignore[arg-type]
 
 
+def test_players_of_different_kinds_are_never_put_together() -> None:
+    of = material(source("mine", episodes(), episodes("other:vlm"), baseline()))
+    found = tables(of)
+    names = {row.cells[1].text for row in found["failure-classes"].rows if not row.is_paper}
+    assert names == {"all vlm models", "openai:gpt-4o", "other:vlm", "baseline"}
+    codes = {name for name in found if name.startswith("failure-codes")}
+    assert codes == {"failure-codes-vlm", "failure-codes-rule-based"}
+
+
 def test_a_long_row_of_episodes_says_how_many_more_there_are() -> None:
     many = material(source("mine", repeated("T1", *[0.0] * 120, diagnosis="reasoning")))
-    (row,) = tables(many)["failure-codes"].rows
+    (row,) = tables(many)["failure-codes-vlm"].rows
     assert (len(row.chips), row.more) == (90, 30)
 
 
 def test_undiagnosed_failures_stay_in_sight() -> None:
     some = material(source("mine", repeated("T1", 0.0, 1.0)))
-    (row,) = tables(some)["failure-codes"].rows
+    (row,) = tables(some)["failure-codes-vlm"].rows
     assert (row.cells[0].text, row.cells[1].text) == ("undiagnosed", "–")
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from math import fsum
 
+from adamo_vh.analysis.cells import Setting
 from adamo_vh.analysis.diagnosis.finding import CODES
 from adamo_vh.analysis.failures import PAPER_CLASSES, UNDIAGNOSED, failures, shares
 from adamo_vh.analysis.outcome import Outcome
@@ -34,24 +36,34 @@ def failing(material: Material) -> Section:
             for block in (
                 _chart(material),
                 _class_table(material),
-                _code_table(material, failed),
-                _curves(material, failed),
+                *_code_tables(material, failed),
+                _curves(material),
             )
             if block is not None
         ),
     )
 
 
-def _groups(material: Material) -> Iterable[tuple[str, str, str, list[Outcome]]]:
-    """Labeling, name and link of a group of episodes, and the failed ones in it."""
-    for labeling in material.labelings:
-        under = [o for o in material.outcomes if o.labeling == labeling]
-        if len(material.settings) > 1:
-            yield labeling, "all together", "", under
-        for setting in material.settings:
-            here = [o for o in material.episodes(setting) if o.labeling == labeling]
-            if here:
-                yield labeling, material.name(setting), material.link(setting), here
+def _groups(material: Material, labeling: str) -> Iterable[tuple[str, str, tuple[Outcome, ...]]]:
+    """Name, link and episodes of what is told of a labeling: all of a kind together, and each."""
+    for kind, settings in _kinds(material).items():
+        parts = {
+            setting: tuple(o for o in material.episodes(setting) if o.labeling == labeling)
+            for setting in settings
+        }
+        if sum(bool(part) for part in parts.values()) > 1:
+            yield f"all {kind} models", "", tuple(chain.from_iterable(parts.values()))
+        for setting, part in parts.items():
+            if part:
+                yield material.name(setting), material.link(setting), part
+
+
+def _kinds(material: Material) -> dict[str, list[Setting]]:
+    """The settings by the kind of their player: kinds are never put together."""
+    found: dict[str, list[Setting]] = {}
+    for setting in material.settings:
+        found.setdefault(setting.model_kind, []).append(setting)
+    return found
 
 
 def _counted(outcomes: Iterable[Outcome]) -> dict[str, tuple[int, float | None]]:
@@ -68,8 +80,7 @@ def _class_table(material: Material) -> Table:
     for labeling in material.labelings:
         rows += [
             _class_row(labeling, name, link, here)
-            for under, name, link, here in _groups(material)
-            if under == labeling
+            for name, link, here in _groups(material, labeling)
         ]
         if labeling in FAILURES:
             rows.append(_printed_row(labeling))
@@ -126,8 +137,8 @@ def _printed_row(labeling: str) -> Row:
 def _chart(material: Material) -> Chart:
     lines = []
     for labeling in material.labelings:
-        for under, name, link, here in _groups(material):
-            if under == labeling and (parts := _parts(here, link)):
+        for name, link, here in _groups(material, labeling):
+            if parts := _parts(here, link):
                 count = sum(not o.is_complete for o in here if o.is_scored)
                 lines.append(Line(f"{shown_labeling(labeling)}: {name} ({count})", parts=parts))
         if labeling in FAILURES:
@@ -162,7 +173,15 @@ def _printed_parts(labeling: str) -> tuple[Part, ...]:
     )
 
 
-def _code_table(material: Material, failed: Sequence[Outcome]) -> Table:
+def _code_tables(material: Material, failed: Sequence[Outcome]) -> Iterable[Table]:
+    """One table for each kind of player."""
+    for kind in _kinds(material):
+        here = [o for o in failed if o.model_kind == kind]
+        if here:
+            yield _code_table(material, here, kind)
+
+
+def _code_table(material: Material, failed: Sequence[Outcome], kind_of_model: str) -> Table:
     groups: dict[tuple[str, str], list[Outcome]] = {}
     for one in failed:
         groups.setdefault((one.diagnosis or UNDIAGNOSED, one.diagnosis_code), []).append(one)
@@ -190,10 +209,10 @@ def _code_table(material: Material, failed: Sequence[Outcome]) -> Table:
             )
         )
     return Table(
-        "failure-codes",
-        "Failures by code",
-        "What exactly went wrong first, over all models, with the number of failed episodes under "
-        "each labeling and the share of all failures.",
+        f"failure-codes-{kind_of_model}",
+        f"Failures by code: {kind_of_model} models",
+        "What exactly went wrong first, over all models of a kind, with the number of failed "
+        "episodes under each labeling and the share of all failures.",
         (
             "class",
             "code",
@@ -212,7 +231,7 @@ def _meaning(code: str) -> str:
     return known.get(code, "")
 
 
-def _curves(material: Material, failed: Iterable[Outcome]) -> Chart | None:
+def _curves(material: Material) -> Chart | None:
     """How far from done failed episodes stayed."""
     panels = []
     for labeling in material.labelings:
