@@ -10,6 +10,7 @@ from scipy import stats
 
 from adamo_vh.analysis.statistics import (
     agreement,
+    freedom,
     interval,
     mean,
     pass_hat,
@@ -53,6 +54,36 @@ def test_what_cannot_be_told_is_none(groups: list[list[float]]) -> None:
 
 def test_nothing_has_no_mean() -> None:
     assert mean([]) is None
+
+
+@pytest.mark.parametrize(
+    ("groups", "degrees"),
+    [
+        ([[0.0, 1.0, 0.5]], 2),
+        ([[0.0, 1.0]] * 4, 4),
+        ([[0.0, 1.0]] * 40, 14),  # No more are counted on.
+        ([[0.0, 1.0, 1.0], *[[1.0] * 3] * 9], 2),  # One group alone varies.
+        ([[1.0] * 5] * 4, 4),
+        ([[0.0, 1.0] * 20], 39),
+    ],
+)
+def test_groups_lend_each_other_degrees_of_freedom(
+    groups: list[list[float]], degrees: float
+) -> None:
+    assert freedom(groups) == pytest.approx(degrees)
+
+
+@pytest.mark.parametrize("repetitions", [2, 3, 5, 15])
+def test_a_mean_that_would_repeat_is_held_as_often_as_promised(repetitions: int) -> None:
+    lots = np.random.default_rng(repetitions)
+    held = []
+    for _ in range(600):
+        skills = lots.beta(5, 3, 15)
+        groups = [list(lots.binomial(2, skill, repetitions) / 2) for skill in skills]
+        found = interval(groups, float(np.mean(groups)))
+        assert found is not None
+        held.append(found.low <= np.mean(skills) <= found.high)
+    assert 0.94 <= np.mean(held) <= 0.985
 
 
 @given(st.lists(st.lists(shares, min_size=2, max_size=6), min_size=1, max_size=6))

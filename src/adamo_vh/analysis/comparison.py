@@ -137,7 +137,7 @@ class _Error:
     """The standard error of an effect."""
 
     error: float
-    degrees: int
+    degrees: float
     least: float
     """No half width is smaller."""
 

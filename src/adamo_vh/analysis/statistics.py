@@ -15,6 +15,8 @@ from math import comb, fsum
 
 CONFIDENCE = 0.95
 """Of every interval."""
+_ENOUGH = 14.0
+"""Degrees of freedom of a cell of 15 episodes, as many as the paper played."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +58,17 @@ def standard_error(groups: Sequence[Sequence[float]]) -> float | None:
     return math.sqrt(fsum(_variance(group) / len(group) for group in groups)) / len(groups)
 
 
-def freedom(groups: Sequence[Sequence[float]]) -> int:
-    """Degrees of freedom of that error: those of the smallest group, to be on the safe side."""
-    return min(map(len, groups)) - 1
+def freedom(groups: Sequence[Sequence[float]]) -> float:
+    """Degrees of freedom of that error, after Welch and Satterthwaite.
+
+    At least those of the smallest group, which are all there are if one group alone varies. More
+    than `_ENOUGH` are not counted on: they are exact for bell-shaped values, and scores are not.
+    """
+    least = min(map(len, groups)) - 1
+    parts = [_variance(group) / len(group) for group in groups]
+    squares = fsum(part**2 / (len(group) - 1) for part, group in zip(parts, groups, strict=True))
+    pooled = fsum(parts) ** 2 / squares if squares else 0.0
+    return max(float(least), round(min(pooled, _ENOUGH), 1))
 
 
 def interval(groups: Sequence[Sequence[float]], centre: float) -> Interval | None:
@@ -92,7 +102,7 @@ def agreement(count: int) -> float:
 
 
 @cache
-def quantile(degrees: int, share: float = (1.0 + CONFIDENCE) / 2) -> float:
+def quantile(degrees: float, share: float = (1.0 + CONFIDENCE) / 2) -> float:
     """Of Student's t distribution."""
     from scipy import stats
 

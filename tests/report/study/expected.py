@@ -8,19 +8,19 @@ ONE_STUDY = {
     "headline": """
 model | kind | completion | would it repeat? | other tasks? | strict | strict: would it repeat? | strict: other tasks? | pass^k | k | tasks | n | unscored
 baseline | rule-based | 0.75 | – | 0.30 to 1.00 | 0.75 | – | 0.30 to 1.00 | 0.75 | 1 | 5 | 20 | 0
-openai:gpt-4o | vlm | 0.50 | 0.20 to 0.80 | 0.05 to 0.95 | 0.50 | 0.20 to 0.80 | 0.05 to 0.95 | 0.05 | 3 | 5 | 60 | 0
+openai:gpt-4o | vlm | 0.50 | 0.35 to 0.65 | 0.05 to 0.95 | 0.50 | 0.35 to 0.65 | 0.05 to 0.95 | 0.05 | 3 | 5 | 60 | 0
 GPT-4o (paper) | vlm | 0.65 | 0.62 to 0.68 | 0.20 to 1.00 | – | – | – | – | – | 5 | 299 | –
 Claude 3.5 Sonnet (paper) | vlm | 0.59 | 0.56 to 0.61 | 0.14 to 1.00 | – | – | – | – | – | 5 | 298 | –
 """,
     "comparison": """
 measure | second less first | first’s mean | second’s mean | difference | would it repeat? | other tasks? | p | could have seen: same tasks | could have seen: other tasks | tasks | first’s n | second’s n
-completion | openai:gpt-4o less baseline | 0.75 | 0.50 | −0.25 | −0.55 to +0.05 | −0.70 to +0.20 | 0.250 | 0.37 | 0.50 | 5 | 20 | 60
-strict | openai:gpt-4o less baseline | 0.75 | 0.50 | −0.25 | −0.55 to +0.05 | −0.70 to +0.20 | 0.250 | 0.37 | 0.50 | 5 | 20 | 60
+completion | openai:gpt-4o less baseline | 0.75 | 0.50 | −0.25 | −0.40 to −0.10 | −0.70 to +0.20 | 0.250 | 0.21 | 0.50 | 5 | 20 | 60
+strict | openai:gpt-4o less baseline | 0.75 | 0.50 | −0.25 | −0.40 to −0.10 | −0.70 to +0.20 | 0.250 | 0.21 | 0.50 | 5 | 20 | 60
 """,
     "comparison-more": """
 measure | second less first | first’s mean | second’s mean | difference | would it repeat? | other tasks? | p | could have seen: same tasks | could have seen: other tasks | tasks | first’s n | second’s n
-early stops | openai:gpt-4o less baseline | 0.25 | 0.50 | +0.25 | −0.05 to +0.55 | −0.20 to +0.70 | 0.250 | 0.37 | 0.50 | 5 | 20 | 60
-false claims | openai:gpt-4o less baseline | 0.25 | 0.50 | +0.25 | −0.05 to +0.55 | −0.20 to +0.70 | 0.250 | 0.37 | 0.50 | 5 | 20 | 60
+early stops | openai:gpt-4o less baseline | 0.25 | 0.50 | +0.25 | +0.10 to +0.40 | −0.20 to +0.70 | 0.250 | 0.21 | 0.50 | 5 | 20 | 60
+false claims | openai:gpt-4o less baseline | 0.25 | 0.50 | +0.25 | +0.10 to +0.40 | −0.20 to +0.70 | 0.250 | 0.21 | 0.50 | 5 | 20 | 60
 tool calls | openai:gpt-4o less baseline | 3.00 | 3.00 | 0.00 | 0.00 to 0.00 | 0.00 to 0.00 | 1.000 | 0.00 | 0.00 | 5 | 20 | 60
 model calls | openai:gpt-4o less baseline | 4.00 | 4.00 | 0.00 | 0.00 to 0.00 | 0.00 to 0.00 | 1.000 | 0.00 | 0.00 | 5 | 20 | 60
 tokens | openai:gpt-4o less baseline | 9,100 | 9,100 | 0 | 0 to 0 | 0 to 0 | 1.000 | 0 | 0 | 5 | 20 | 60
@@ -62,39 +62,39 @@ T14 | 15 | 18 | 1.00 | – | 1.00 | 0.37 to 1.00 | 0.21 | 0.37
     "averages": """
 cells | model | completion | would it repeat? | other tasks? | s/call | Walk | Look | Look + first | Pick | Drop | Total | n
 all labelings | baseline | 0.75 | – | 0.30 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 20
-all labelings | openai:gpt-4o | 0.50 | 0.20 to 0.80 | 0.05 to 0.95 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 60
+all labelings | openai:gpt-4o | 0.50 | 0.35 to 0.65 | 0.05 to 0.95 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 60
 all labelings | GPT-4o (paper), published | 0.65 | 0.62 to 0.68 | 0.20 to 1.00 | 7.67 | 0.74 | 0.87 | 1.87 | 2.06 | 1.50 | 5.17 | 299
 all labelings | Claude 3.5 Sonnet (paper), published | 0.59 | 0.56 to 0.61 | 0.14 to 1.00 | 7.95 | 0.33 | 0.87 | 1.87 | 1.81 | 1.39 | 4.40 | 298
 all labelings | GPT-4o (paper), printed | 0.68 | – | – | 6.85 | – | – | – | – | – | 4.70 | –
 all labelings | Claude 3.5 Sonnet (paper), printed | 0.61 | – | – | 8.01 | – | – | – | – | – | 4.19 | –
 OPAQ | baseline | 0.60 | – | 0.15 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 10
-OPAQ | openai:gpt-4o | 0.37 | 0.00 to 0.77 | 0.00 to 0.82 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 30
+OPAQ | openai:gpt-4o | 0.37 | 0.16 to 0.57 | 0.00 to 0.82 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 30
 OPAQ | GPT-4o (paper), published | 0.52 | 0.47 to 0.57 | 0.07 to 0.97 | 8.48 | 0.71 | 0.92 | 1.92 | 1.99 | 1.43 | 5.05 | 150
 OPAQ | Claude 3.5 Sonnet (paper), published | 0.43 | 0.39 to 0.47 | 0.00 to 0.88 | 8.13 | 0.38 | 1.29 | 2.29 | 1.76 | 1.37 | 4.80 | 149
 OPAQ | GPT-4o (paper), printed | 0.48 | – | – | 7.63 | 0.53 | – | 1.61 | – | – | 4.80 | –
 OPAQ | Claude 3.5 Sonnet (paper), printed | 0.38 | – | – | 8.31 | 0.38 | – | 2.10 | – | – | 4.57 | –
 SEM | baseline | 0.90 | – | 0.45 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 10
-SEM | openai:gpt-4o | 0.63 | 0.20 to 1.00 | 0.18 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 30
+SEM | openai:gpt-4o | 0.63 | 0.42 to 0.85 | 0.18 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 30
 SEM | GPT-4o (paper), published | 0.78 | 0.75 to 0.81 | 0.33 to 1.00 | 6.86 | 0.78 | 0.83 | 1.83 | 2.13 | 1.56 | 5.29 | 149
 SEM | Claude 3.5 Sonnet (paper), published | 0.74 | 0.71 to 0.77 | 0.29 to 1.00 | 7.77 | 0.28 | 0.46 | 1.46 | 1.85 | 1.40 | 3.99 | 149
 SEM | GPT-4o (paper), printed | 0.88 | – | – | 6.06 | 0.62 | – | 1.41 | – | – | 4.60 | –
 SEM | Claude 3.5 Sonnet (paper), printed | 0.83 | – | – | 7.72 | 0.23 | – | 1.25 | – | – | 3.80 | –
 OPAQ, S1 | baseline | 0.60 | – | 0.00 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 5
-OPAQ, S1 | openai:gpt-4o | 0.33 | 0.00 to 0.91 | 0.00 to 0.78 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 15
+OPAQ, S1 | openai:gpt-4o | 0.33 | 0.03 to 0.64 | 0.00 to 0.78 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 15
 OPAQ, S1 | GPT-4o (paper), published | 0.50 | 0.44 to 0.56 | 0.05 to 0.95 | 5.56 | 0.01 | 0.35 | 1.35 | 1.96 | 1.51 | 3.83 | 75
 OPAQ, S1 | Claude 3.5 Sonnet (paper), published | 0.47 | 0.40 to 0.53 | 0.00 to 0.97 | 8.18 | 0.40 | 1.21 | 2.21 | 1.85 | 1.47 | 4.93 | 75
 OPAQ, S2 | baseline | 0.60 | – | 0.00 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 5
-OPAQ, S2 | openai:gpt-4o | 0.40 | 0.00 to 0.97 | 0.00 to 0.85 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 15
+OPAQ, S2 | openai:gpt-4o | 0.40 | 0.09 to 0.71 | 0.00 to 0.85 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 15
 OPAQ, S2 | GPT-4o (paper), published | 0.54 | 0.47 to 0.62 | 0.07 to 1.00 | 11.40 | 1.40 | 1.49 | 2.49 | 2.03 | 1.36 | 6.28 | 75
 OPAQ, S2 | Claude 3.5 Sonnet (paper), published | 0.40 | 0.34 to 0.45 | 0.00 to 0.87 | 8.08 | 0.36 | 1.36 | 2.36 | 1.67 | 1.28 | 4.67 | 74
 SEM, S1 | baseline | 0.80 | – | 0.24 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 5
-SEM, S1 | openai:gpt-4o | 0.60 | 0.00 to 1.00 | 0.15 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 15
+SEM, S1 | openai:gpt-4o | 0.60 | 0.27 to 0.93 | 0.15 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 15
 SEM, S1 | GPT-4o (paper), published | 0.86 | 0.82 to 0.90 | 0.41 to 1.00 | 5.00 | 0.00 | 0.17 | 1.17 | 2.09 | 1.67 | 3.93 | 75
 SEM, S1 | Claude 3.5 Sonnet (paper), published | 0.81 | 0.75 to 0.87 | 0.35 to 1.00 | 7.99 | 0.23 | 0.40 | 1.40 | 1.83 | 1.43 | 3.88 | 75
 SEM, S1 | GPT-4o (paper), printed | 0.93 | – | – | 4.71 | 0.00 | – | 1.08 | – | – | 3.67 | –
 SEM, S1 | Claude 3.5 Sonnet (paper), printed | 0.90 | – | – | 7.94 | 0.19 | – | 1.19 | – | – | 3.75 | –
 SEM, S2 | baseline | 1.00 | – | 0.55 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 5
-SEM, S2 | openai:gpt-4o | 0.67 | 0.09 to 1.00 | 0.22 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 15
+SEM, S2 | openai:gpt-4o | 0.67 | 0.36 to 0.97 | 0.22 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 15
 SEM, S2 | GPT-4o (paper), published | 0.69 | 0.63 to 0.75 | 0.19 to 1.00 | 8.72 | 1.56 | 1.48 | 2.48 | 2.16 | 1.45 | 6.65 | 74
 SEM, S2 | Claude 3.5 Sonnet (paper), published | 0.67 | 0.63 to 0.71 | 0.10 to 1.00 | 7.54 | 0.33 | 0.52 | 1.52 | 1.88 | 1.37 | 4.10 | 74
 SEM, S2 | GPT-4o (paper), printed | 0.83 | – | – | 7.12 | 1.24 | – | 1.74 | – | – | 5.53 | –
@@ -103,26 +103,26 @@ SEM, S2 | Claude 3.5 Sonnet (paper), printed | 0.76 | – | – | 7.49 | 0.28 | 
     "families": """
 family | model | completion | would it repeat? | other tasks? | strict | model calls | tokens | n
 single object | baseline | 0.88 | – | 0.00 to 1.00 | 0.88 | 4.00 | 9,100 | 8
-single object | openai:gpt-4o | 0.38 | 0.00 to 0.85 | 0.00 to 1.00 | 0.38 | 4.00 | 9,100 | 24
+single object | openai:gpt-4o | 0.38 | 0.14 to 0.61 | 0.00 to 1.00 | 0.38 | 4.00 | 9,100 | 24
 single object | GPT-4o (paper) | 0.82 | 0.76 to 0.88 | 0.00 to 1.00 | – | 4.31 | 35,924 | 119
 single object | Claude 3.5 Sonnet (paper) | 0.68 | 0.63 to 0.72 | 0.00 to 1.00 | – | 2.89 | 20,811 | 119
 several objects | baseline | 0.75 | – | – | 0.75 | 4.00 | 9,100 | 4
-several objects | openai:gpt-4o | 0.42 | 0.00 to 1.00 | – | 0.42 | 4.00 | 9,100 | 12
+several objects | openai:gpt-4o | 0.42 | 0.06 to 0.77 | – | 0.42 | 4.00 | 9,100 | 12
 several objects | GPT-4o (paper) | 0.81 | 0.76 to 0.86 | – | – | 5.63 | 39,736 | 60
 several objects | Claude 3.5 Sonnet (paper) | 0.63 | 0.57 to 0.69 | – | – | 5.50 | 40,866 | 60
 comparative and relational | baseline | 0.50 | – | – | 0.50 | 4.00 | 9,100 | 4
-comparative and relational | openai:gpt-4o | 0.58 | 0.00 to 1.00 | – | 0.58 | 4.00 | 9,100 | 12
+comparative and relational | openai:gpt-4o | 0.58 | 0.20 to 0.97 | – | 0.58 | 4.00 | 9,100 | 12
 comparative and relational | GPT-4o (paper) | 0.53 | 0.48 to 0.57 | – | – | 6.02 | 45,029 | 60
 comparative and relational | Claude 3.5 Sonnet (paper) | 0.57 | 0.52 to 0.62 | – | – | 5.88 | 45,602 | 60
 attribute-heavy and long | baseline | 0.75 | – | – | 0.75 | 4.00 | 9,100 | 4
-attribute-heavy and long | openai:gpt-4o | 0.75 | 0.13 to 1.00 | – | 0.75 | 4.00 | 9,100 | 12
+attribute-heavy and long | openai:gpt-4o | 0.75 | 0.40 to 1.00 | – | 0.75 | 4.00 | 9,100 | 12
 attribute-heavy and long | GPT-4o (paper) | 0.28 | 0.23 to 0.33 | – | – | 10.32 | 103,507 | 60
 attribute-heavy and long | Claude 3.5 Sonnet (paper) | 0.38 | 0.32 to 0.44 | – | – | 9.77 | 93,032 | 59
 """,
     "labelings": """
 model | OPAQ | SEM | difference | would it repeat? | other tasks? | p | gain | Looks
 baseline | 0.60 | 0.90 | +0.30 | – | −0.15 to +0.75 | 0.250 | +50.0 % | 0.0 %
-openai:gpt-4o | 0.37 | 0.63 | +0.27 | −0.32 to +0.86 | −0.18 to +0.72 | 0.062 | +72.7 % | 0.0 %
+openai:gpt-4o | 0.37 | 0.63 | +0.27 | −0.03 to +0.56 | −0.18 to +0.72 | 0.062 | +72.7 % | 0.0 %
 GPT-4o (paper), printed | 0.48 | 0.88 | +0.40 | – | – | – | +83.3 % | −12.4 %
 Claude 3.5 Sonnet (paper), printed | 0.38 | 0.83 | +0.45 | – | – | – | +118.4 % | −40.5 %
 """,
@@ -251,29 +251,29 @@ REL | area | within a designated area | 4
 SIDE_BY_SIDE = {
     "headline": """
 model | kind | completion | would it repeat? | other tasks? | strict | strict: would it repeat? | strict: other tasks? | pass^k | k | tasks | n | unscored
-openai:gpt-4o, k=4 | vlm | 0.67 | 0.00 to 1.00 | 0.04 to 1.00 | 0.67 | 0.00 to 1.00 | 0.04 to 1.00 | 0.50 | 2 | 3 | 24 | 0
-openai:gpt-4o, k=50 | vlm | 0.71 | 0.00 to 1.00 | 0.08 to 1.00 | 0.71 | 0.00 to 1.00 | 0.08 to 1.00 | 0.42 | 2 | 3 | 24 | 0
-openai:gpt-4o | vlm | 0.42 | 0.00 to 1.00 | 0.00 to 1.00 | 0.42 | 0.00 to 1.00 | 0.00 to 1.00 | 0.17 | 2 | 3 | 24 | 0
+openai:gpt-4o, k=4 | vlm | 0.67 | 0.44 to 0.90 | 0.04 to 1.00 | 0.67 | 0.44 to 0.90 | 0.04 to 1.00 | 0.50 | 2 | 3 | 24 | 0
+openai:gpt-4o, k=50 | vlm | 0.71 | 0.45 to 0.97 | 0.08 to 1.00 | 0.71 | 0.45 to 0.97 | 0.08 to 1.00 | 0.42 | 2 | 3 | 24 | 0
+openai:gpt-4o | vlm | 0.42 | 0.17 to 0.67 | 0.00 to 1.00 | 0.42 | 0.17 to 0.67 | 0.00 to 1.00 | 0.17 | 2 | 3 | 24 | 0
 GPT-4o (paper) | vlm | 0.69 | 0.66 to 0.71 | 0.00 to 1.00 | – | – | – | – | – | 3 | 180 | –
 Claude 3.5 Sonnet (paper) | vlm | 0.67 | 0.64 to 0.70 | 0.00 to 1.00 | – | – | – | – | – | 3 | 179 | –
 """,
     "comparison": """
 measure | second less first | first’s mean | second’s mean | difference | would it repeat? | other tasks? | p | could have seen: same tasks | could have seen: other tasks | tasks | first’s n | second’s n
-completion | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 0.67 | 0.71 | +0.04 | −1.00 to +1.00 | −0.59 to +0.67 | 1.000 | 1.95 | 0.63 | 3 | 24 | 24
-completion | openai:gpt-4o less openai:gpt-4o, k=4 | 0.67 | 0.42 | −0.25 | −1.00 to +1.00 | −0.88 to +0.38 | 0.250 | 1.86 | 0.63 | 3 | 24 | 24
-completion | openai:gpt-4o less openai:gpt-4o, k=50 | 0.71 | 0.42 | −0.29 | −1.00 to +1.00 | −0.94 to +0.35 | 0.500 | 2.12 | 0.81 | 3 | 24 | 24
-strict | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 0.67 | 0.71 | +0.04 | −1.00 to +1.00 | −0.59 to +0.67 | 1.000 | 1.95 | 0.63 | 3 | 24 | 24
-strict | openai:gpt-4o less openai:gpt-4o, k=4 | 0.67 | 0.42 | −0.25 | −1.00 to +1.00 | −0.88 to +0.38 | 0.250 | 1.86 | 0.63 | 3 | 24 | 24
-strict | openai:gpt-4o less openai:gpt-4o, k=50 | 0.71 | 0.42 | −0.29 | −1.00 to +1.00 | −0.94 to +0.35 | 0.500 | 2.12 | 0.81 | 3 | 24 | 24
+completion | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 0.67 | 0.71 | +0.04 | −0.34 to +0.43 | −0.59 to +0.67 | 1.000 | 0.51 | 0.63 | 3 | 24 | 24
+completion | openai:gpt-4o less openai:gpt-4o, k=4 | 0.67 | 0.42 | −0.25 | −0.62 to +0.12 | −0.88 to +0.38 | 0.250 | 0.49 | 0.63 | 3 | 24 | 24
+completion | openai:gpt-4o less openai:gpt-4o, k=50 | 0.71 | 0.42 | −0.29 | −0.66 to +0.08 | −0.94 to +0.35 | 0.500 | 0.50 | 0.81 | 3 | 24 | 24
+strict | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 0.67 | 0.71 | +0.04 | −0.34 to +0.43 | −0.59 to +0.67 | 1.000 | 0.51 | 0.63 | 3 | 24 | 24
+strict | openai:gpt-4o less openai:gpt-4o, k=4 | 0.67 | 0.42 | −0.25 | −0.62 to +0.12 | −0.88 to +0.38 | 0.250 | 0.49 | 0.63 | 3 | 24 | 24
+strict | openai:gpt-4o less openai:gpt-4o, k=50 | 0.71 | 0.42 | −0.29 | −0.66 to +0.08 | −0.94 to +0.35 | 0.500 | 0.50 | 0.81 | 3 | 24 | 24
 """,
     "comparison-more": """
 measure | second less first | first’s mean | second’s mean | difference | would it repeat? | other tasks? | p | could have seen: same tasks | could have seen: other tasks | tasks | first’s n | second’s n
-early stops | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 0.33 | 0.29 | −0.04 | −1.00 to +1.00 | −0.67 to +0.59 | 1.000 | 1.95 | 0.63 | 3 | 24 | 24
-early stops | openai:gpt-4o less openai:gpt-4o, k=4 | 0.33 | 0.58 | +0.25 | −1.00 to +1.00 | −0.38 to +0.88 | 0.250 | 1.86 | 0.63 | 3 | 24 | 24
-early stops | openai:gpt-4o less openai:gpt-4o, k=50 | 0.29 | 0.58 | +0.29 | −1.00 to +1.00 | −0.35 to +0.94 | 0.500 | 2.12 | 0.81 | 3 | 24 | 24
-false claims | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 0.33 | 0.29 | −0.04 | −1.00 to +1.00 | −0.67 to +0.59 | 1.000 | 1.95 | 0.63 | 3 | 24 | 24
-false claims | openai:gpt-4o less openai:gpt-4o, k=4 | 0.33 | 0.58 | +0.25 | −1.00 to +1.00 | −0.38 to +0.88 | 0.250 | 1.86 | 0.63 | 3 | 24 | 24
-false claims | openai:gpt-4o less openai:gpt-4o, k=50 | 0.29 | 0.58 | +0.29 | −1.00 to +1.00 | −0.35 to +0.94 | 0.500 | 2.12 | 0.81 | 3 | 24 | 24
+early stops | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 0.33 | 0.29 | −0.04 | −0.43 to +0.34 | −0.67 to +0.59 | 1.000 | 0.51 | 0.63 | 3 | 24 | 24
+early stops | openai:gpt-4o less openai:gpt-4o, k=4 | 0.33 | 0.58 | +0.25 | −0.12 to +0.62 | −0.38 to +0.88 | 0.250 | 0.49 | 0.63 | 3 | 24 | 24
+early stops | openai:gpt-4o less openai:gpt-4o, k=50 | 0.29 | 0.58 | +0.29 | −0.08 to +0.66 | −0.35 to +0.94 | 0.500 | 0.50 | 0.81 | 3 | 24 | 24
+false claims | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 0.33 | 0.29 | −0.04 | −0.43 to +0.34 | −0.67 to +0.59 | 1.000 | 0.51 | 0.63 | 3 | 24 | 24
+false claims | openai:gpt-4o less openai:gpt-4o, k=4 | 0.33 | 0.58 | +0.25 | −0.12 to +0.62 | −0.38 to +0.88 | 0.250 | 0.49 | 0.63 | 3 | 24 | 24
+false claims | openai:gpt-4o less openai:gpt-4o, k=50 | 0.29 | 0.58 | +0.29 | −0.08 to +0.66 | −0.35 to +0.94 | 0.500 | 0.50 | 0.81 | 3 | 24 | 24
 tool calls | openai:gpt-4o, k=50 less openai:gpt-4o, k=4 | 3.00 | 3.00 | 0.00 | 0.00 to 0.00 | 0.00 to 0.00 | 1.000 | 0.00 | 0.00 | 3 | 24 | 24
 tool calls | openai:gpt-4o less openai:gpt-4o, k=4 | 3.00 | 3.00 | 0.00 | 0.00 to 0.00 | 0.00 to 0.00 | 1.000 | 0.00 | 0.00 | 3 | 24 | 24
 tool calls | openai:gpt-4o less openai:gpt-4o, k=50 | 3.00 | 3.00 | 0.00 | 0.00 to 0.00 | 0.00 to 0.00 | 1.000 | 0.00 | 0.00 | 3 | 24 | 24
@@ -316,23 +316,23 @@ T14 | 15 | 18 | 1.00 | 0.22 to 1.00 | 1.00 | 0.22 to 1.00 | 1.00 | 0.22 to 1.00 
 """,
     "averages": """
 cells | model | completion | would it repeat? | other tasks? | s/call | Walk | Look | Look + first | Pick | Drop | Total | n
-all labelings | openai:gpt-4o, k=4 | 0.67 | 0.00 to 1.00 | 0.04 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 24
-all labelings | openai:gpt-4o, k=50 | 0.71 | 0.00 to 1.00 | 0.08 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 24
-all labelings | openai:gpt-4o | 0.42 | 0.00 to 1.00 | 0.00 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 24
+all labelings | openai:gpt-4o, k=4 | 0.67 | 0.44 to 0.90 | 0.04 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 24
+all labelings | openai:gpt-4o, k=50 | 0.71 | 0.45 to 0.97 | 0.08 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 24
+all labelings | openai:gpt-4o | 0.42 | 0.17 to 0.67 | 0.00 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 24
 all labelings | GPT-4o (paper), published | 0.69 | 0.66 to 0.71 | 0.00 to 1.00 | 7.39 | 0.94 | 0.83 | 1.83 | 2.39 | 1.83 | 6.00 | 180
 all labelings | Claude 3.5 Sonnet (paper), published | 0.67 | 0.64 to 0.70 | 0.00 to 1.00 | 7.91 | 0.19 | 0.89 | 1.89 | 2.01 | 1.69 | 4.77 | 179
 all labelings | GPT-4o (paper), printed | 0.68 | – | – | 6.85 | – | – | – | – | – | 4.70 | –
 all labelings | Claude 3.5 Sonnet (paper), printed | 0.61 | – | – | 8.01 | – | – | – | – | – | 4.19 | –
-OPAQ | openai:gpt-4o, k=4 | 0.42 | 0.00 to 1.00 | 0.00 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
-OPAQ | openai:gpt-4o, k=50 | 0.75 | 0.00 to 1.00 | 0.12 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
-OPAQ | openai:gpt-4o | 0.17 | 0.00 to 1.00 | 0.00 to 0.88 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
+OPAQ | openai:gpt-4o, k=4 | 0.42 | 0.00 to 0.88 | 0.00 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
+OPAQ | openai:gpt-4o, k=50 | 0.75 | 0.29 to 1.00 | 0.12 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
+OPAQ | openai:gpt-4o | 0.17 | 0.00 to 0.67 | 0.00 to 0.88 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
 OPAQ | GPT-4o (paper), published | 0.63 | 0.58 to 0.67 | 0.00 to 1.00 | 8.17 | 0.98 | 0.88 | 1.88 | 2.29 | 1.72 | 5.87 | 90
 OPAQ | Claude 3.5 Sonnet (paper), published | 0.55 | 0.51 to 0.60 | 0.00 to 1.00 | 8.09 | 0.26 | 1.32 | 2.32 | 2.02 | 1.71 | 5.32 | 89
 OPAQ | GPT-4o (paper), printed | 0.48 | – | – | 7.63 | 0.53 | – | 1.61 | – | – | 4.80 | –
 OPAQ | Claude 3.5 Sonnet (paper), printed | 0.38 | – | – | 8.31 | 0.38 | – | 2.10 | – | – | 4.57 | –
 SEM | openai:gpt-4o, k=4 | 0.92 | 0.00 to 1.00 | 0.29 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
-SEM | openai:gpt-4o, k=50 | 0.67 | 0.00 to 1.00 | 0.04 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
-SEM | openai:gpt-4o | 0.67 | 0.00 to 1.00 | 0.04 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
+SEM | openai:gpt-4o, k=50 | 0.67 | 0.20 to 1.00 | 0.04 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
+SEM | openai:gpt-4o | 0.67 | 0.20 to 1.00 | 0.04 to 1.00 | 2.00 | 0.00 | 1.00 | 2.00 | 1.00 | 1.00 | 3.00 | 12
 SEM | GPT-4o (paper), published | 0.75 | 0.72 to 0.79 | 0.00 to 1.00 | 6.60 | 0.91 | 0.78 | 1.78 | 2.50 | 1.94 | 6.13 | 90
 SEM | Claude 3.5 Sonnet (paper), published | 0.79 | 0.76 to 0.82 | 0.00 to 1.00 | 7.74 | 0.11 | 0.47 | 1.47 | 1.99 | 1.67 | 4.23 | 90
 SEM | GPT-4o (paper), printed | 0.88 | – | – | 6.06 | 0.62 | – | 1.41 | – | – | 4.60 | –
@@ -383,8 +383,8 @@ attribute-heavy and long | Claude 3.5 Sonnet (paper) | 0.38 | 0.32 to 0.44 | –
     "labelings": """
 model | OPAQ | SEM | difference | would it repeat? | other tasks? | p | gain | Looks
 openai:gpt-4o, k=4 | 0.42 | 0.92 | +0.50 | −1.00 to +1.00 | −0.74 to +1.00 | 0.500 | +120.0 % | 0.0 %
-openai:gpt-4o, k=50 | 0.75 | 0.67 | −0.08 | −1.00 to +1.00 | −0.80 to +0.63 | 1.000 | −11.1 % | 0.0 %
-openai:gpt-4o | 0.17 | 0.67 | +0.50 | −1.00 to +1.00 | −0.13 to +1.00 | 0.250 | +300.0 % | 0.0 %
+openai:gpt-4o, k=50 | 0.75 | 0.67 | −0.08 | −0.78 to +0.62 | −0.80 to +0.63 | 1.000 | −11.1 % | 0.0 %
+openai:gpt-4o | 0.17 | 0.67 | +0.50 | −0.38 to +1.00 | −0.13 to +1.00 | 0.250 | +300.0 % | 0.0 %
 GPT-4o (paper), printed | 0.48 | 0.88 | +0.40 | – | – | – | +83.3 % | −12.4 %
 Claude 3.5 Sonnet (paper), printed | 0.38 | 0.83 | +0.45 | – | – | – | +118.4 % | −40.5 %
 """,
@@ -426,8 +426,8 @@ protocol | unreadable | Replies could not be read as a call or an answer. | 2 | 
 """,
     "ablation-k": """
 model | k | completion | would it repeat? | other tasks? | Look + first | model calls | s/call | tokens | n
-openai:gpt-4o | 4 | 0.67 | 0.00 to 1.00 | 0.04 to 1.00 | 2.00 | 4.00 | 2.00 | 9,100 | 24
-openai:gpt-4o | 50 | 0.71 | 0.00 to 1.00 | 0.08 to 1.00 | 2.00 | 4.00 | 2.00 | 9,100 | 24
+openai:gpt-4o | 4 | 0.67 | 0.44 to 0.90 | 0.04 to 1.00 | 2.00 | 4.00 | 2.00 | 9,100 | 24
+openai:gpt-4o | 50 | 0.71 | 0.45 to 0.97 | 0.08 to 1.00 | 2.00 | 4.00 | 2.00 | 9,100 | 24
 GPT-4o (paper) | 4 | 0.82 | – | – | 1.27 | 6.34 | 3.94 | – | –
 GPT-4o (paper) | 6 | 0.84 | – | – | 1.20 | 9.20 | 3.85 | – | –
 GPT-4o (paper) | 10 | 0.86 | – | – | 1.47 | 6.99 | 4.05 | – | –
