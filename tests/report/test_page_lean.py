@@ -22,7 +22,7 @@ from adamo_vh.inference.model import Reply, Rung, Usage
 from adamo_vh.observation import Frame
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Ended, Started, Thought, read_trajectory, shown
-from adamo_vh.report.timeline import Turn, turns
+from adamo_vh.report.timeline import ShownTurn, turns
 
 LEAN = PROFILES["lean"]
 DONE = Feedback(Outcome.DONE, Code.OK, "Done: so it is.")
@@ -60,7 +60,7 @@ def finished(run: Recorder, reason: TerminationReason = TerminationReason.ANSWER
     run.writer.notify(Ended(run.step, reason, "Here it is.", run.world.hash(), 9.0))
 
 
-def lean_turns(run: Recorder) -> tuple[Turn, ...]:
+def lean_turns(run: Recorder) -> tuple[ShownTurn, ...]:
     return turns(read_trajectory(run.folder))
 
 

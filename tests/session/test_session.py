@@ -329,6 +329,8 @@ def test_a_labeling_can_be_handed_in(tmp_path: Path, engine: BuiltinEngine) -> N
     assert result.final.body.held == 57
     with pytest.raises(RecordError, match=r"\(Letters\); hand it in again"):
         adamo_vh.replay_episode(tmp_path)
+    assert result.own_labeling == "Letters"
+    assert "<span>labeling</span> Letters" in (tmp_path / "episode.html").read_text()
     again = adamo_vh.replay_episode(tmp_path, labeling=Letters(), engine=engine)
     assert again.mismatches == ()
 

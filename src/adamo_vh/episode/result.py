@@ -114,6 +114,8 @@ class EpisodeResult:
     final: WorldState
     warnings: tuple[str, ...] = ()
     """What people should know of the replies; see `Reply.warning`."""
+    own_labeling: str = ""
+    """Class of the labeling, if it was handed in; `labeling` plays no part then."""
     seal: Seal | None = None
     """Digests of the files that this rests on, once it is written; older results have none."""
 
@@ -218,6 +220,7 @@ def summarise(
         usage=sum((took.usage for took in answers), Usage()),
         cost_usd=total_cost(answers),
         warnings=_warnings(replies),
+        own_labeling=manifest.labeling,
         rungs=tuple(sorted({str(reply.rung) for reply in replies if reply.rung is not None})),
         model_s=sum(reply.seconds for reply in replies),
         world_s=sum(act.world_s for act in trajectory.acts),

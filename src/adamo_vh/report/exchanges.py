@@ -10,7 +10,7 @@ from adamo_vh.engine import WorldState
 from adamo_vh.perception import Labeling
 from adamo_vh.record.trajectory import Ended
 from adamo_vh.report.contradictions import contradictions
-from adamo_vh.report.timeline import Turn
+from adamo_vh.report.timeline import ShownTurn
 from adamo_vh.report.whereabouts import Whereabouts, followed
 
 
@@ -21,7 +21,7 @@ class Exchange:
     number: int
     """From 1."""
     instruction: str
-    turns: tuple[Turn, ...]
+    turns: tuple[ShownTurn, ...]
     """At least one."""
     moved: tuple[Whereabouts, ...]
     """Where things were put in it, as the feedback says."""
@@ -45,7 +45,7 @@ class Exchange:
 
 
 def exchanges(
-    turns: Sequence[Turn], instruction: str, world: WorldState, labeling: Labeling
+    turns: Sequence[ShownTurn], instruction: str, world: WorldState, labeling: Labeling
 ) -> tuple[Exchange, ...]:
     """Group turns by what they were asked for.
 
@@ -78,7 +78,7 @@ def exchanges(
     return tuple(found)
 
 
-def _said(turns: Sequence[Turn]) -> Iterable[str]:
+def _said(turns: Sequence[ShownTurn]) -> Iterable[str]:
     """The answer, and what was said to be verified."""
     ended, closing = turns[-1].ended, turns[-1].closing
     if ended and ended.reason.is_scored:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from adamo_vh.analysis.diagnosis.finding import Diagnosis, Evidence
-from adamo_vh.report.timeline import Turn
+from adamo_vh.report.timeline import ShownTurn
 
 _AROUND = 1.2
 """So much of its own size is shown on each side of a thing."""
@@ -27,7 +27,7 @@ class Fact:
 
 
 def facts(
-    diagnosis: Diagnosis, turns: Sequence[Turn], frames: Callable[[str], bytes]
+    diagnosis: Diagnosis, turns: Sequence[ShownTurn], frames: Callable[[str], bytes]
 ) -> tuple[Fact, ...]:
     """The evidence of a diagnosis.
 

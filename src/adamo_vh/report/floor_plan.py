@@ -16,7 +16,7 @@ from adamo_vh.geometry import Box, Plan, Vec3, hull
 from adamo_vh.observation import AgentState, BodyState
 from adamo_vh.perception import Labeling
 from adamo_vh.report.map_labels import Ground, Label, Wish, placed
-from adamo_vh.report.timeline import Turn
+from adamo_vh.report.timeline import ShownTurn
 from adamo_vh.report.whereabouts import Whereabouts
 
 _MARGIN_M = 0.35
@@ -122,7 +122,7 @@ class FloorPlan:
 
 def floor_plan(
     initial: WorldState,
-    turns: Sequence[Turn],
+    turns: Sequence[ShownTurn],
     final: WorldState | None,
     told: Mapping[str, Whereabouts] | None = None,
 ) -> FloorPlan:

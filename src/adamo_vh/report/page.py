@@ -35,7 +35,7 @@ from adamo_vh.report.failure import facts
 from adamo_vh.report.floor_plan import FloorPlan, floor_plan
 from adamo_vh.report.summary import KINDS, Account, ending, verdict
 from adamo_vh.report.templating import csp_hash, environment, template_text
-from adamo_vh.report.timeline import Turn, turns
+from adamo_vh.report.timeline import ShownTurn, turns
 from adamo_vh.report.whereabouts import followed
 
 PAGE = "episode.html"
@@ -111,7 +111,8 @@ def _recovered(result: EpisodeResult | None) -> Manifest:
     config = EpisodeConfig(
         result.instruction, result.task, result.scene, labeling=result.labeling, seed=result.seed
     )
-    return Manifest(config, result.model, result.model_kind, {}, "", result.final)
+    model, kind, initial = result.model, result.model_kind, result.final
+    return Manifest(config, model, kind, {}, "", initial, labeling=result.own_labeling)
 
 
 def render_page(
@@ -147,6 +148,7 @@ def render_page(
         .get_template("episode.html.j2")
         .render(
             config=config,
+            labeling=manifest.labeling or config.labeling.value.upper(),
             manifest=manifest,
             events=trajectory,
             ended=ended,
@@ -174,7 +176,10 @@ def render_page(
 
 
 def _plan(
-    manifest: Manifest, trajectory: Trajectory, steps: Sequence[Turn], result: EpisodeResult | None
+    manifest: Manifest,
+    trajectory: Trajectory,
+    steps: Sequence[ShownTurn],
+    result: EpisodeResult | None,
 ) -> FloorPlan | None:
     """The map; None if nobody knows how the room was at the start."""
     if not manifest.versions:

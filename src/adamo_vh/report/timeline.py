@@ -116,8 +116,8 @@ class Closing:
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
-    """One time around the loop."""
+class ShownTurn:
+    """One time around the loop, as the page shows it."""
 
     anchor: str
     """Names the turn within the page."""
@@ -169,7 +169,7 @@ class Turn:
 class _Draft:
     """A turn that is not over yet."""
 
-    turn: Turn
+    turn: ShownTurn
     acts: list[Acted] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     """Why the calls after these were not executed."""
@@ -181,7 +181,7 @@ class _Timeline:
     """Gathers events into turns."""
 
     def __init__(self) -> None:
-        self.turns: list[Turn] = []
+        self.turns: list[ShownTurn] = []
         self._shown: dict[str, tuple[str, str]] = {}
         """By frame: the turn that shows it, and its name there."""
         self._draft: _Draft | None = None
@@ -238,7 +238,7 @@ class _Timeline:
         place = (anchor, f"{anchor}-view")
         if self._view:
             place = self._shown.setdefault(self._view.frame, place)
-        turn = Turn(anchor, "", self._view, self._fresh, *place, thought, self._agent)
+        turn = ShownTurn(anchor, "", self._view, self._fresh, *place, thought, self._agent)
         self._draft = draft = _Draft(replace(turn, started=self._started))
         self._fresh, self._started = False, None
         return draft
@@ -288,7 +288,7 @@ class _Timeline:
         return Picture(name, event, turn, source)
 
 
-def turns(trajectory: Trajectory) -> tuple[Turn, ...]:
+def turns(trajectory: Trajectory) -> tuple[ShownTurn, ...]:
     """Arrange the events of an episode, also of one that was cut off, into turns."""
     timeline = _Timeline()
     for event in trajectory.events:
@@ -320,7 +320,7 @@ def _own_notes(note: str, deeds: Sequence[Deed]) -> Iterator[Deed]:
         said.add(deed.note)
 
 
-def _tone(turn: Turn, ended: Ended | None, *, went_on: bool) -> str:
+def _tone(turn: ShownTurn, ended: Ended | None, *, went_on: bool) -> str:
     if turn.thought is None and not turn.acts:
         return "view"
     if turn.thought and turn.thought.reply.unreadable:
@@ -337,7 +337,7 @@ def _tone(turn: Turn, ended: Ended | None, *, went_on: bool) -> str:
     return "returned" if went_on or stopped else "answer"
 
 
-def _label(turn: Turn, tone: str) -> str:
+def _label(turn: ShownTurn, tone: str) -> str:
     if not turn.acts:
         return str(turn.thought.step + 1) if turn.thought and tone == "cut" else ""
     first, last = turn.acts[0].step, turn.acts[-1].step

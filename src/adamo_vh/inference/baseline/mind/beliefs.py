@@ -11,7 +11,7 @@ from adamo_vh.inference.baseline.mind import notes
 from adamo_vh.inference.baseline.mind.choosing import WELL_SEEN_PX, degree, thing_of
 from adamo_vh.inference.baseline.mind.happenings import FAR_M, came_to_rest, happened, taken
 from adamo_vh.inference.baseline.mind.memory import Memory, Search, Slot, Stand, Thing
-from adamo_vh.inference.baseline.prompt.reading import Event, Prompt, Turn
+from adamo_vh.inference.baseline.prompt.reading import Event, OwnTurn, Prompt
 from adamo_vh.inference.baseline.sight.closeups import closeup_sight
 from adamo_vh.inference.baseline.sight.kinds import (
     Beliefs,
@@ -109,7 +109,7 @@ def _stand(prompt: Prompt, memory: Memory) -> None:
     memory.home = memory.home or memory.began
 
 
-def since_whole(turns: tuple[Turn, ...]) -> tuple[Turn, ...]:
+def since_whole(turns: tuple[OwnTurn, ...]) -> tuple[OwnTurn, ...]:
     """The turns from the last one on whose note holds all that was known."""
     starts = [index for index, turn in enumerate(turns) if notes.read(turn.note).whole]
     return turns[starts[-1] :] if starts else turns

@@ -60,7 +60,7 @@ def decide(
     memory = recalled(prompt, plan)
     before = memory.copy()
     look(prompt, plan, memory, reader)
-    turn = Turn(prompt, plan, memory, manner)
+    turn = Choice(prompt, plan, memory, manner)
     move, end = turn.first_move()
     if end is not None:
         return Step(finish=end)
@@ -74,7 +74,7 @@ def decide(
     return Step(note + carried_over(prompt, plan, known, before, moves), tuple(moves))
 
 
-def _plan_on(turn: Turn, first: Move, known: Memory) -> list[Move]:
+def _plan_on(turn: Choice, first: Move, known: Memory) -> list[Move]:
     """The calls of a turn: as many as follow without a further view.
 
     What further goals turn out to be about on the way is added to what is known.
@@ -108,7 +108,7 @@ def _follows(move: Move, last: Move) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class Choice:
     """The choice of one call."""
 
     prompt: Prompt

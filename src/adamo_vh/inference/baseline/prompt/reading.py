@@ -24,7 +24,7 @@ from adamo_vh.inference.messages import (
     ToolMessage,
 )
 
-__all__ = ["Body", "Event", "Listed", "Prompt", "Room", "Turn", "first_point", "read_prompt"]
+__all__ = ["Body", "Event", "Listed", "OwnTurn", "Prompt", "Room", "first_point", "read_prompt"]
 
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _SPAN = re.compile(rf"x from {_NUMBER} to {_NUMBER} and y from {_NUMBER} to {_NUMBER}")
@@ -102,7 +102,7 @@ class Event:
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class OwnTurn:
     """One own message, and what came back for its calls."""
 
     note: str
@@ -124,9 +124,9 @@ class Prompt:
     body: Body = field(default_factory=lambda: Body(Vec3(0.0, 0.0, 0.0)))
     frame: ImagePart | None = None
     """The latest view."""
-    turns: tuple[Turn, ...] = ()
+    turns: tuple[OwnTurn, ...] = ()
     """The own turns since the instruction, as far as they are in the prompt."""
-    earlier: tuple[Turn, ...] = ()
+    earlier: tuple[OwnTurn, ...] = ()
     """Those before it: of former instructions."""
     former: str = ""
     """The instruction before this one."""
@@ -177,9 +177,9 @@ class Prompt:
         return tuple((p.x, p.y, p.z) for p in self.points)
 
 
-def _by_instruction(turns: Sequence[Turn]) -> list[list[Turn]]:
+def _by_instruction(turns: Sequence[OwnTurn]) -> list[list[OwnTurn]]:
     """The turns of each former instruction; an answer ends one."""
-    groups: list[list[Turn]] = [[]]
+    groups: list[list[OwnTurn]] = [[]]
     for turn in turns:
         groups[-1].append(turn)
         if turn.answer:
@@ -195,11 +195,11 @@ class _Reader:
     system: list[str] = field(default_factory=list)
     instruction: str = ""
     frame: ImagePart | None = None
-    turns: list[Turn] = field(default_factory=list)
+    turns: list[OwnTurn] = field(default_factory=list)
     calls: dict[str, tuple[str, Mapping[str, Any]]] = field(default_factory=dict)
     fresh: bool = True
     viewed: int = 0
-    earlier: list[Turn] = field(default_factory=list)
+    earlier: list[OwnTurn] = field(default_factory=list)
     former: str = ""
     began: Body | None = None
     pinned: frozenset[str] = frozenset()
@@ -243,7 +243,7 @@ class _Reader:
         notes = [str(a["note"]) for a in arguments if isinstance(a.get("note"), str)]
         told = [str(a["answer"]) for a in arguments if isinstance(a.get("answer"), str)]
         answer = told[0] if told else "" if message.calls else message.text
-        self.turns.append(Turn(message.text or "\n".join(notes), (), answer))
+        self.turns.append(OwnTurn(message.text or "\n".join(notes), (), answer))
         self.state.turn = len(self.turns)
         for call, values in zip(message.calls, arguments, strict=True):
             self.calls[call.id] = (call.name, values)
