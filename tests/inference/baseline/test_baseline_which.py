@@ -7,6 +7,7 @@ from tests.inference.baseline.meaning import parts, read
 from tests.inference.baseline.room import TextRoom
 
 from adamo_vh.inference.baseline.language.requests import understand
+from adamo_vh.inference.baseline.mind.beliefs import told_by_text
 from adamo_vh.inference.baseline.sight.kinds import class_of
 from adamo_vh.inference.baseline.tags import parts_of
 
@@ -132,3 +133,11 @@ def test_the_other_one_is_of_the_kind_that_was_asked_for_before():
 def test_what_is_held_can_be_let_go_though_no_list_tells_of_it():
     room = TextRoom("Put Key_34 on the floor", held="Key_34", heading_rad=3.1)
     assert "34" in room.run(4).on_floor()
+
+
+def test_what_is_left_out_is_told_by_looks_where_tags_do_not_tell():
+    (goal,) = understand("Put everything except the cup on the floor").goals
+    assert told_by_text(goal.target, "Plate_57")
+    assert not told_by_text(goal.target, "57")
+    (goal,) = understand("Put everything on the floor").goals
+    assert told_by_text(goal.target, "57")

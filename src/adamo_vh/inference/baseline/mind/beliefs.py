@@ -133,7 +133,7 @@ def told_by_text(description: Description, tag: str) -> bool:
     """Whether the text alone tells if this thing is meant."""
     if description.ids:
         return True
-    if description.by_looks:
+    if description.by_looks or not all(told_by_text(left, tag) for left in description.but):
         return False
     return class_of(tag) is not None or not description.classes
 

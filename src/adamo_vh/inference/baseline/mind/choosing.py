@@ -33,11 +33,10 @@ _ALMOST = 0.8
 def needed_fit(stage: Stage, description: Description | None = None) -> float:
     """How well one thing must fit to be taken: less the more was searched.
 
-    What is told by its looks alone must look so; a kind may be guessed, which the answer says.
+    What is told by its looks must look so; a mere kind may be guessed, which the answer says.
     """
     if stage is Stage.OVER:
-        looks_alone = description is not None and description.by_looks and not description.classes
-        return _LIKELY if looks_alone else _AT_ALL
+        return _LIKELY if description is not None and description.by_looks else _AT_ALL
     return _LIKELY if stage is Stage.CLOSE else _SURE
 
 
@@ -207,8 +206,12 @@ def degree(
         tag = thing.tag.lower()
         return 1.0 if {parts_of(tag)[1] or tag, tag} & set(description.ids) else 0.0
     beliefs = beliefs or classify(thing.tag, thing.volume_cm3, sight)
-    if any(degree(left, thing, sight, others, beliefs) >= _LEFT_OUT for left in description.but):
-        return 0.0
+    for left in description.but:
+        # What seems to be of the kind is rather left out, than moved against the wish.
+        seems = likeliest(beliefs) in left.classes
+        least = _LIKELY if seems else _LEFT_OUT
+        if degree(left, thing, sight, others, beliefs) >= least:
+            return 0.0
     factors = _factors(description, thing, beliefs, sight)
     if description.source:
         factors.append(_from_there(description.source, thing, others, viewer))
