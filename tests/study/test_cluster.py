@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -114,11 +113,9 @@ def test_a_lost_node_costs_nothing_but_what_it_played(
         run = episode_folder(tmp_path / "far", EPISODES[0].key)
         (run / RESULT).unlink()
         (tmp_path / "far" / "index.sqlite").unlink()
-        begun = time.monotonic()
         means = Means(workers=1, cluster=Cluster(nodes.address, shared))
         run_study(STUDY, tmp_path / "far", means, lambda tally, supervisor: Heard())
-        assert read_outcomes(tmp_path / "far")[0] == far
-        assert time.monotonic() - begun < 60
+        assert read_outcomes(tmp_path / "far")[0] == far  # To the last hundredth of a second.
 
 
 @pytest.mark.extras
