@@ -11,6 +11,7 @@ import fcntl
 import hashlib
 import io
 import json
+import os
 import re
 import shutil
 import zipfile
@@ -20,7 +21,7 @@ from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
@@ -99,13 +100,13 @@ def _key() -> str:
 
 
 @cache
-def _hold(folder: Path) -> IO[bytes] | None:
-    """Show other processes, as long as this one lives, that a set is in use."""
+def _hold(folder: Path) -> int | None:
+    """Show other processes that a set is in use: the file stays open until this one ends."""
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        file = (folder / _LOCK).open("ab")
-        fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        return file
+        held = os.open(folder / _LOCK, os.O_CREAT | os.O_RDWR, 0o666)
+        fcntl.flock(held, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        return held
     return None
 
 
