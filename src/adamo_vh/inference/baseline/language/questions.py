@@ -252,8 +252,3 @@ def _predicate(thing: str, what: str, before: tuple[str, ...], negated: bool) ->
         said = replace(quality[0], text=what)
         return Question(Ask.IS, subject, quality=said, negated=negated)
     return None
-
-
-def held_place(place: Goal | None) -> bool:
-    """Whether a place is the own hand."""
-    return place is not None and place.relation is Relation.HOLD
