@@ -27,6 +27,6 @@ def test_the_oracle_solves_it_and_idling_does_not(
 def test_half_a_plan_scores_its_fraction(engine: BuiltinEngine, task: Task) -> None:
     half = first_half(task.conditions)
     done = sum(condition in task.conditions for condition in half)
-    played = play_oracle(engine, Labeling.SEM, task, half)
+    played, _ = play_oracle(engine, Labeling.SEM, task, half)
     assert played.completion == pytest.approx(done / len(task.conditions))
     assert played.strict == 0.0

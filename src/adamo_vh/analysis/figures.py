@@ -171,11 +171,9 @@ def _calls(groups: Sequence[Cell]) -> dict[str, float | None]:
 
 
 def _path_ratio(episodes: Sequence[Outcome]) -> float | None:
-    ways = [(o.walked_m, o.shortest_m) for o in episodes if o.is_complete]
-    if not ways or any(shortest is None for _, shortest in ways):
-        return None
-    shortest = fsum(way for _, way in ways if way is not None)
-    return fsum(walked for walked, _ in ways) / shortest if shortest else None
+    known = [(o.walked_m, o.shortest_m) for o in episodes if o.is_complete and o.shortest_m]
+    shortest = fsum(way for _, way in known)
+    return fsum(walked for walked, _ in known) / shortest if known else None
 
 
 def _scored(groups: Sequence[Cell], measure: Callable[[Outcome], float | None]) -> Scored:

@@ -156,7 +156,7 @@ def outcome_of(
         axes: Further settings that the study varies, by name.
         run: The run folder, relative to the study's.
         task: What was asked for, if the task is no built-in one.
-        shortest_m: Metres that the oracle walks for the task from the same start.
+        shortest_m: Metres that the oracle walks for the task from the same start; None if unknown.
         diagnosis: Class and code of the failure, if it was diagnosed.
     """
     config = manifest.config

@@ -30,6 +30,8 @@ class Verification:
     oracle_strict: float
     idle: float
     """Completion of doing nothing."""
+    walked_m: float = 0.0
+    """Metres that the oracle walks."""
     problems: tuple[str, ...] = ()
     """What is met before anything is done, and what the oracle leaves open or spoils."""
 
@@ -47,7 +49,7 @@ def verify_tasks(
         engine.reset(0)
         start = engine.state()
         idle = score(start, start, task)
-        played = play_oracle(engine, labeling, task, task.goals)
+        played, walked_m = play_oracle(engine, labeling, task, task.goals)
         met = [c.text for c in idle.conditions if c.satisfied]
         left = [c.text for c in played.conditions if not c.satisfied]
         yield Verification(
@@ -57,6 +59,7 @@ def verify_tasks(
             played.completion,
             played.strict,
             idle.completion,
+            walked_m,
             (
                 *(f"is so at the start: {text}" for text in met),
                 *(f"the oracle cannot do it: {text}" for text in left),
@@ -65,7 +68,9 @@ def verify_tasks(
         )
 
 
-def play_oracle(engine: World, labeling: Tagger, task: Task, goals: Sequence[Condition]) -> Score:
+def play_oracle(
+    engine: World, labeling: Tagger, task: Task, goals: Sequence[Condition]
+) -> tuple[Score, float]:
     """Let the oracle play towards goals through the same four tools, and score the task.
 
     Args:
@@ -74,6 +79,9 @@ def play_oracle(engine: World, labeling: Tagger, task: Task, goals: Sequence[Con
         task: What is scored.
         goals: What the oracle tries to bring about; a part of the task's conditions gives a part
             of its score.
+
+    Returns:
+        The score, and how many metres the oracle walked.
     """
     engine.reset(0)
     start = engine.state()
@@ -84,11 +92,11 @@ def play_oracle(engine: World, labeling: Tagger, task: Task, goals: Sequence[Con
     )
     oracle = Oracle(goals, server.tag, server.body.info)
     server.observe()
-    states = [start]
+    states, walked_m = [start], 0.0
     for _ in range(MAX_STEPS):
         action = oracle.next_action(states[-1], server.seen)
         if action is None:
             break
-        server.execute(action)
+        walked_m += server.execute(action).feedback.walked_m
         states.append(engine.state())
-    return score(start, states[-1], task, states[1:])
+    return score(start, states[-1], task, states[1:]), walked_m

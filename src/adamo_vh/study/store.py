@@ -16,6 +16,7 @@ from typing import Any, Self
 
 from adamo_vh.analysis.diagnosis.finding import DIAGNOSIS, read_diagnosis
 from adamo_vh.analysis.outcome import Outcome, outcome_of
+from adamo_vh.benchmark.ways import way_m
 from adamo_vh.episode.result import read_manifest, read_result
 from adamo_vh.errors import AdamoError, ConfigError, FileError, RecordError
 from adamo_vh.files import read_json, write_whole
@@ -71,6 +72,7 @@ def finished(folder: Path, planned: Planned) -> Outcome | None:
         axes=dict(cell.axes),
         run=f"{EPISODES}/{planned.key}",
         task=planned.config.own_task,
+        shortest_m=way_m(planned.config.scene, planned.variation, planned.config.task),
         diagnosis=_diagnosis(run),
     )
     # Called as in the plan: a model that draws lots has its seed in its own name, which would make

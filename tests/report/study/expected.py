@@ -208,7 +208,7 @@ SEM | GPT-4o (paper) | 6.86 | 49.04 | – | –
 SEM | Claude 3.5 Sonnet (paper) | 7.77 | 39.13 | – | –
 """,
     "conduct": """
-labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | walked, m | path / shortest
+labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | walked, m | path / oracle’s
 all labelings | baseline | 0.75 | 0.75 | 25.0 % | 25.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
 all labelings | openai:gpt-4o | 0.50 | 0.50 | 50.0 % | 50.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
 all labelings | GPT-4o (paper) | 0.65 | – | – | – | – | – | – | – | – | –
@@ -488,7 +488,7 @@ SEM | GPT-4o (paper) | 6.60 | 54.38 | – | –
 SEM | Claude 3.5 Sonnet (paper) | 7.74 | 41.36 | – | –
 """,
     "conduct": """
-labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | walked, m | path / shortest
+labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | walked, m | path / oracle’s
 all labelings | openai:gpt-4o, k=4 | 0.67 | 0.67 | 33.3 % | 33.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
 all labelings | openai:gpt-4o, k=50 | 0.71 | 0.71 | 29.2 % | 29.2 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
 all labelings | openai:gpt-4o | 0.42 | 0.42 | 58.3 % | 58.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00

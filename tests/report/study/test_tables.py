@@ -107,7 +107,7 @@ def test_nothing_is_called_zero_that_is_unknown() -> None:
     assert (tokens["cost"], tokens["cost per solved"]) == ("–", "–")
     assert tokens["tokens per solved"] == "18,200"
     conduct = dict(zip(found["conduct"].columns, rows(found["conduct"])[0], strict=True))
-    assert conduct["path / shortest"] == "–"
+    assert conduct["path / oracle’s"] == "–"
 
 
 def test_what_is_unscored_is_counted_apart() -> None:

@@ -113,7 +113,7 @@ _CONDUCT: tuple[Column, ...] = (
     ("protocol failures", "number", lambda f: f.protocol_failures, None),
     ("missing notes", "number", lambda f: f.missing_notes, None),
     ("walked, m", "metres", lambda f: f.walked_m, None),
-    ("path / shortest", "number", lambda f: f.path_ratio, None),
+    ("path / oracle’s", "number", lambda f: f.path_ratio, None),
 )
 
 
@@ -132,8 +132,9 @@ def conduct(material: Material) -> Section:
                 "Early stops: share of episodes that the agent ended with conditions open. False "
                 "claims: those in which it said that all was done. Refused calls changed nothing, "
                 "corrected ones were carried out otherwise than asked; protocol failures are "
-                "replies that were neither a call nor an answer; each per episode. Path / shortest "
-                "is metres walked over those of the oracle, in complete episodes.",
+                "replies that were neither a call nor an answer; each per episode. Path / oracle’s "
+                "is metres walked over those of the oracle, in complete episodes for which these "
+                "are known: those in a scene as it is.",
                 _CONDUCT,
             ),
             *([curve] if curve else []),
