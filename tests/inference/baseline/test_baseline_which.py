@@ -8,6 +8,8 @@ from tests.inference.baseline.room import TextRoom
 
 from adamo_vh.inference.baseline.language.requests import understand
 from adamo_vh.inference.baseline.mind.beliefs import told_by_text
+from adamo_vh.inference.baseline.mind.memory import Memory
+from adamo_vh.inference.baseline.mind.notes import Entry, apply
 from adamo_vh.inference.baseline.sight.kinds import class_of
 from adamo_vh.inference.baseline.tags import parts_of
 
@@ -141,3 +143,9 @@ def test_what_is_left_out_is_told_by_looks_where_tags_do_not_tell():
     assert not told_by_text(goal.target, "57")
     (goal,) = understand("Put everything on the floor").goals
     assert told_by_text(goal.target, "57")
+
+
+def test_distances_survive_a_note():
+    memory = Memory()
+    apply(Entry(1, items=["seen from m: 0 2.1, Plate_57 1.6"]), memory)
+    assert memory.seen_m == {"0": 2.1, "Plate_57": 1.6}

@@ -131,6 +131,9 @@ def _members(description: Description, fits: dict[str, float], over: bool) -> li
 def extreme(description: Description, fits: dict[str, float], memory: Memory) -> list[str]:
     """The smallest, largest, tallest or shortest of those that fit; by volume as the text says."""
     things = [memory.things[tag] for tag, fit in fits.items() if fit >= _LIKELY]
+    from_what = description.measured_from
+    if from_what and not any(kind_of(tag, memory) in from_what for tag in memory.things):
+        return []  # what it is to be nearest to was not made out
     if not things:
         return []
     ordered = sorted(things, key=lambda t: (_extent(description, t, memory), t.tag))

@@ -128,7 +128,7 @@ def _apply_words(head: str, rest: str, memory: Memory) -> None:
         for tag, *numbers in _FROM.findall(rest):
             memory.came_from[tag] = _vec(numbers)
     elif head == "seen from m":
-        for tag, metres in re.findall(rf"(\S+) ({_NUMBER})", rest):
+        for tag, metres in re.findall(rf"([^\s,]+) ({_NUMBER})", rest):
             memory.seen_m[tag] = float(metres)
     else:
         kept = {"taken for": memory.kinds, "looks": memory.looks, "rests": memory.rests}.get(head)
