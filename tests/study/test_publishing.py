@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -65,9 +66,19 @@ def test_a_place_that_cannot_be_used_is_told(tmp_path: Path) -> None:
         check_place("nowhere://x")
     with pytest.raises(FileError, match="the same command goes on"):
         publish(run, f"file://{tmp_path / 'file'}", KEY)
-    archive = tmp_path / "shared" / EPISODES / f"{KEY}.tar"
+    archive = tmp_path / "shared" / EPISODES / f"{KEY}.zip"
     archive.parent.mkdir(parents=True)
     archive.write_bytes(b"no archive")
     with pytest.raises(FileError, match="damaged"):
         collect(f"file://{tmp_path / 'shared'}", KEY, tmp_path / "there")
     assert not (tmp_path / "there").exists()
+
+
+def test_no_name_in_an_archive_leads_out_of_the_run(tmp_path: Path) -> None:
+    pytest.importorskip("fsspec")
+    archive = tmp_path / "shared" / EPISODES / f"{KEY}.zip"
+    archive.parent.mkdir(parents=True)
+    with zipfile.ZipFile(archive, "w") as made:
+        made.writestr("../../outside", "x")
+    assert collect(f"file://{tmp_path / 'shared'}", KEY, tmp_path / "there" / "run")
+    assert [path for path in tmp_path.rglob("outside") if path.parent.name != "run"] == []

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import shutil
-import tarfile
+import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -58,9 +58,11 @@ def publish(run: Path, place: str, key: str) -> None:
         copy_whole(run, Path(place) / EPISODES / key)
         return
     packed = io.BytesIO()
-    with naming("read", run), tarfile.open(fileobj=packed, mode="w") as archive:
-        archive.add(run, ".", filter=lambda item: None if item.name.endswith(LOCK) else item)
-    with _store(f"{place.rstrip('/')}/{EPISODES}/{key}.tar") as (files, path):
+    with naming("read", run), zipfile.ZipFile(packed, "w") as archive:
+        for file in sorted(run.rglob("*")):
+            if file.name != LOCK:
+                archive.write(file, file.relative_to(run))
+    with _store(f"{place.rstrip('/')}/{EPISODES}/{key}.zip") as (files, path):
         files.makedirs(path.rpartition("/")[0], exist_ok=True)
         half = f"{path}.{uuid4().hex[:12]}.part"
         files.pipe_file(half, packed.getvalue())
@@ -88,16 +90,17 @@ def collect(place: str, key: str, there: Path) -> bool:
         if run.resolve() != there.resolve():
             copy_whole(run, there)
         return True
-    with _store(f"{place.rstrip('/')}/{EPISODES}/{key}.tar") as (files, path):
+    with _store(f"{place.rstrip('/')}/{EPISODES}/{key}.zip") as (files, path):
         if not files.exists(path):
             return False
         data = files.cat_file(path)
     with _whole(there) as half:
         make_folder(half)
         try:
-            with tarfile.open(fileobj=io.BytesIO(data)) as archive:
-                archive.extractall(half, filter="data")
-        except tarfile.TarError as error:
+            # Unlike a tar, a zip has no links, and none of its names leads out of the folder.
+            with zipfile.ZipFile(io.BytesIO(data)) as archive:
+                archive.extractall(half)
+        except zipfile.BadZipFile as error:
             raise FileError(
                 f"{place}: the archive of {key} is damaged ({error}); delete it, and give the same "
                 "command again."
