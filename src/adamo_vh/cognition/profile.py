@@ -111,7 +111,7 @@ class Profile:
         return replace(self, pictures=NO_PICTURES, closeups=False, min_confidence=0.0)
 
     def with_one_picture(self) -> Profile:
-        """The same for a server that takes one picture a prompt: close-ups stay beside views."""
+        """The same for a server that takes one picture a prompt: no close-up beside the view."""
         pictures = 1 if isinstance(self.pictures, int) else self.pictures
         return replace(self, pictures=pictures, closeups=False, min_confidence=0.0)
 

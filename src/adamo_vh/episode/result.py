@@ -277,10 +277,14 @@ def to_json(record: Manifest | EpisodeResult) -> Any:
     return _codec(type(record)).dump_python(record, mode="json")
 
 
+def record_json(record: Manifest | EpisodeResult) -> bytes:
+    """A record as its file holds it."""
+    return _codec(type(record)).dump_json(record, indent=1)
+
+
 def write_record(folder: Path, name: str, record: Manifest | EpisodeResult) -> None:
     """Write a record into a run folder, whole or not at all."""
-    data = _codec(type(record)).dump_json(record, indent=1)
-    write_whole(folder / name, data, durable=True)
+    write_whole(folder / name, record_json(record), durable=True)
 
 
 def read_manifest(folder: Path) -> Manifest:

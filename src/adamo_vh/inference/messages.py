@@ -88,3 +88,10 @@ class ToolMessage:
 
 
 Message = SystemMessage | HumanMessage | AIMessage | ToolMessage
+
+
+def pictures_of(message: Message) -> tuple[ImagePart, ...]:
+    """The pictures of a message, in order."""
+    if isinstance(message, HumanMessage):
+        return tuple(part for part in message.parts if isinstance(part, ImagePart))
+    return message.images if isinstance(message, ToolMessage) else ()

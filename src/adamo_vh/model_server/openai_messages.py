@@ -23,6 +23,7 @@ from adamo_vh.inference.messages import (
     TextPart,
     ToolCall,
     ToolMessage,
+    pictures_of,
 )
 from adamo_vh.inference.model import Sampling
 from adamo_vh.model_server.json_fields import (
@@ -75,7 +76,7 @@ def read_request(body: Any) -> ChatRequest:
     messages = with_result_pictures(_messages(items(body, "messages")))
     schema, streams = _schema(body), mapping(body.get("stream_options") or {}, "stream_options")
     names = {name for name, value in body.items() if value is not None}
-    if any(isinstance(p, ImagePart) for m in messages for p in _parts_of(m)):
+    if any(map(pictures_of, messages)):
         names.add("image_url")
     return ChatRequest(
         text(body, "model"),
@@ -88,12 +89,6 @@ def read_request(body: Any) -> ChatRequest:
         flag(streams, "include_usage", "stream_options"),
         frozenset(names),
     )
-
-
-def _parts_of(message: Message) -> Sequence[Part]:
-    if isinstance(message, HumanMessage):
-        return message.parts
-    return message.images if isinstance(message, ToolMessage) else ()
 
 
 def _messages(entries: Sequence[Any]) -> tuple[Message, ...]:

@@ -18,6 +18,7 @@ from adamo_vh.inference.messages import (
     Message,
     ToolCall,
     ToolMessage,
+    pictures_of,
 )
 from adamo_vh.inference.prompts import render
 from adamo_vh.inference.remote.probe import COLOURS, LAMP
@@ -34,7 +35,7 @@ def answer_to_probe(messages: Sequence[Message], tools: Sequence[ToolSchema]) ->
     question = human[0].text.strip() if human else ""
     if question not in _questions():
         return None
-    pictures = [part for message in messages for part in _pictures(message)]
+    pictures = [part for message in messages for part in pictures_of(message)]
     offered = any(tool.name == LAMP.name for tool in tools)
     if offered and not any(isinstance(message, ToolMessage) for message in messages):
         return AIMessage("", (ToolCall("call_probe", LAMP.name, {"lamp": "desk"}),))
@@ -44,12 +45,6 @@ def answer_to_probe(messages: Sequence[Message], tools: Sequence[ToolSchema]) ->
 @cache
 def _questions() -> frozenset[str]:
     return frozenset(render(f"probe_{name}") for name in ("colours", "tool", "schema", "word"))
-
-
-def _pictures(message: Message) -> list[ImagePart]:
-    if isinstance(message, HumanMessage):
-        return [part for part in message.parts if isinstance(part, ImagePart)]
-    return list(message.images) if isinstance(message, ToolMessage) else []
 
 
 def _halves(picture: ImagePart) -> str:

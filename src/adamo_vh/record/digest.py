@@ -62,9 +62,12 @@ def seal_of(folder: Path, recorded: Trajectory, result: Mapping[str, Any]) -> Se
     Raises:
         FileError: A file cannot be read.
     """
+    return _sealed(folder, _frames(folder, recorded), result)
+
+
+def _sealed(folder: Path, pictures: Mapping[str, str], result: Mapping[str, Any]) -> Seal:
     files = {name: _digest(folder / name) for name in _FILES if (folder / name).exists()}
-    names = _frames(recorded)
-    lines = "".join(f"{name} {_digest(folder / FRAMES / name)}\n" for name in names)
+    lines = "".join(f"{name} {digest}\n" for name, digest in pictures.items())
     frames = hashlib.sha256(lines.encode()).hexdigest()
     rest = _canonical({name: value for name, value in result.items() if name != SEAL})
     return Seal(files, frames, rest, _whole(files, frames, rest))
@@ -81,7 +84,8 @@ def differences(
         result: The result as plain data.
         seal: The seal that is on record.
     """
-    now = seal_of(folder, recorded, result)
+    pictures = _frames(folder, recorded)
+    now = _sealed(folder, pictures, result)
     for name in dict.fromkeys((*seal.files, *now.files)):
         if name not in now.files:
             yield f"{name} is missing"
@@ -89,7 +93,7 @@ def differences(
             yield f"{name} was added after the result was written"
         elif now.files[name] != seal.files[name]:
             yield f"{name} was changed after the result was written"
-    wrong = list(_wrong_frames(folder, recorded))
+    wrong = list(_wrong_frames(pictures))
     yield from wrong
     if now.frames != seal.frames and not wrong and now.files.get(EVENTS) == seal.files.get(EVENTS):
         yield f"{FRAMES}/ holds other pictures than when the result was written"
@@ -99,21 +103,21 @@ def differences(
         yield f"{RESULT}: the digest of the whole is not that of its parts"
 
 
-def _wrong_frames(folder: Path, recorded: Trajectory) -> Iterator[str]:
+def _wrong_frames(pictures: Mapping[str, str]) -> Iterator[str]:
     """Pictures whose content is not the one that they are called by."""
-    for name in _frames(recorded):
-        digest = _digest(folder / FRAMES / name)
+    for name, digest in pictures.items():
         if digest == _MISSING:
             yield f"{FRAMES}/{name} is missing"
         elif not name.startswith(digest[:24]):
             yield f"{FRAMES}/{name} is another picture than the one that was recorded"
 
 
-def _frames(recorded: Trajectory) -> list[str]:
+def _frames(folder: Path, recorded: Trajectory) -> dict[str, str]:
+    """The digest of each picture that the events name, in order of their names."""
     named = {event.frame for event in recorded.events if isinstance(event, Observed | Shown)}
     if odd := next((name for name in named if Path(name).name != name), None):
         raise RecordError(f"{EVENTS} names the picture {odd!r}, which is outside {FRAMES}/.")
-    return sorted(named)
+    return {name: _digest(folder / FRAMES / name) for name in sorted(named)}
 
 
 def _digest(path: Path) -> str:

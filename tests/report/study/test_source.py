@@ -16,7 +16,7 @@ from adamo_vh.analysis.diagnosis.finding import DIAGNOSIS, Code, Diagnosis, Fail
 from adamo_vh.analysis.outcome import Outcome
 from adamo_vh.errors import FileError
 from adamo_vh.report.page import PAGE
-from adamo_vh.report.study.material import Source
+from adamo_vh.report.study.material import Material, Source
 from adamo_vh.report.study.source import Pages, links, source_of
 from adamo_vh.report.study.writing import write_report
 
@@ -119,7 +119,7 @@ def test_distances_come_from_what_was_diagnosed(study: tuple[Path, tuple[Outcome
 
 def test_a_report_is_a_page_and_its_tables(tmp_path: Path) -> None:
     source = Source("mine", tuple(repeated("T1", 0.0, 1.0)), 4)
-    page, *beside = write_report("Mine", [source], tmp_path / "out")
+    page, *beside = write_report(Material.of("Mine", [source]), tmp_path / "out")
     assert page == tmp_path / "out" / "report.html"
     assert {"report.md", "report.tex", "headline.csv", "cells.csv", "episodes.csv"} <= {
         path.name for path in beside
@@ -132,7 +132,7 @@ def test_a_report_is_a_page_and_its_tables(tmp_path: Path) -> None:
 def test_the_same_study_gives_the_same_report(tmp_path: Path) -> None:
     outcomes = tuple(repeated("T1", 0.0, 1.0, 1.0))
     for name, order in (("a", outcomes), ("b", outcomes[::-1])):
-        write_report("Mine", [Source("mine", order, 3)], tmp_path / name)
+        write_report(Material.of("Mine", [Source("mine", order, 3)]), tmp_path / name)
     for path in (tmp_path / "a").rglob("*.*"):
         again = tmp_path / "b" / path.relative_to(tmp_path / "a")
         assert again.read_bytes() == path.read_bytes(), path.name
@@ -140,5 +140,6 @@ def test_the_same_study_gives_the_same_report(tmp_path: Path) -> None:
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
+    material = Material.of("Mine", [Source("mine", tuple(repeated("T1", 1.0)), 1)])
     with pytest.raises(FileError, match="file"):
-        write_report("Mine", [Source("mine", tuple(repeated("T1", 1.0)), 1)], tmp_path / "file")
+        write_report(material, tmp_path / "file")

@@ -56,16 +56,6 @@ FAILURES: Mapping[str, Mapping[str, float | None]] = MappingProxyType(
 )
 """Shares of failures by class; of reasoning it says 2 to 3 % for both."""
 
-BASELINE_SETTING: Mapping[str, str] = MappingProxyType(
-    {
-        "k": "50",
-        "sampling": "temperature=0,top_p=0",
-        "grid": "6",
-        "resolution": "1920x1080",
-    }
-)
-"""What the ablations leave as it is, by the name of the axis."""
-
 
 @dataclass(frozen=True, slots=True)
 class Ablated:

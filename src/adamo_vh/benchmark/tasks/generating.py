@@ -56,7 +56,7 @@ def split_of(conditions: Sequence[Condition]) -> str:
 
     So no task of one split is in the other, whatever seeds they were made with.
     """
-    told = "\n".join(sorted(map(str, conditions)))
+    told = "\n".join(_told(conditions))
     return SPLITS[hashlib.sha256(told.encode()).digest()[0] % 2]
 
 

@@ -30,10 +30,9 @@ from adamo_vh.inference.cost.text import estimate_text
 from adamo_vh.inference.messages import (
     AIMessage,
     HumanMessage,
-    ImagePart,
     Message,
     TextPart,
-    ToolMessage,
+    pictures_of,
 )
 from adamo_vh.inference.model import Model, Reply, Sampling, Usage
 from adamo_vh.inference.players.wrapper import Ask, Wrapped
@@ -90,7 +89,7 @@ def estimate_request(
 def estimate_message(message: Message, rule: ImageRule = OPENAI_TILES) -> int:
     """Input tokens of one message of a prompt."""
     texts = sum(estimate_text(text) for text in _texts(message))
-    pictures = sum(estimate_image(p.width_px, p.height_px, rule) for p in _pictures(message))
+    pictures = sum(estimate_image(p.width_px, p.height_px, rule) for p in pictures_of(message))
     calls = len(message.calls) * PER_CALL if isinstance(message, AIMessage) else 0
     return PER_MESSAGE + texts + pictures + calls
 
@@ -211,10 +210,3 @@ def _texts(message: Message) -> Iterator[str]:
         for call in message.calls:
             yield call.name
             yield call.raw or dump_arguments(call.arguments or {})
-
-
-def _pictures(message: Message) -> Iterator[ImagePart]:
-    if isinstance(message, HumanMessage):
-        yield from (part for part in message.parts if isinstance(part, ImagePart))
-    elif isinstance(message, ToolMessage):
-        yield from message.images

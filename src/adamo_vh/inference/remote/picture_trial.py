@@ -18,6 +18,7 @@ from adamo_vh.inference.messages import (
     Part,
     SystemMessage,
     ToolMessage,
+    pictures_of,
 )
 from adamo_vh.inference.model import Reply, Spent
 from adamo_vh.inference.remote.faults import is_too_long, picture_fix
@@ -28,7 +29,7 @@ _ABOUT_REQUEST = frozenset({400, 404, 415, 422, 500, 501})
 
 def count_pictures(messages: Sequence[Message]) -> int:
     """How many pictures a prompt holds."""
-    return sum(len(_pictures(message)) for message in messages)
+    return sum(len(pictures_of(message)) for message in messages)
 
 
 def may_be_pictures(error: ProviderError) -> bool:
@@ -87,12 +88,6 @@ def _spent(on: Reply | ProviderError) -> Spent:
     return Spent.on(on) if isinstance(on, Reply) else on.spent or Spent()
 
 
-def _pictures(message: Message) -> Sequence[ImagePart]:
-    if isinstance(message, HumanMessage):
-        return [part for part in message.parts if isinstance(part, ImagePart)]
-    return message.images if isinstance(message, ToolMessage) else ()
-
-
 def _fewer(messages: Sequence[Message], most: int) -> list[Message]:
     """The same prompt with the newest pictures alone."""
     left = count_pictures(messages) - most
@@ -101,7 +96,7 @@ def _fewer(messages: Sequence[Message], most: int) -> list[Message]:
         if isinstance(message, SystemMessage | AIMessage):
             kept.append(message)
             continue
-        gone = min(left, len(_pictures(message)))
+        gone = min(left, len(pictures_of(message)))
         left -= gone
         if isinstance(message, ToolMessage):
             kept.append(replace(message, images=message.images[gone:]))

@@ -74,22 +74,29 @@ def _table(material: Material) -> Table:
 def _ours(material: Material, setting: Setting, what: str, mean: MeanRow) -> Row:
     found = mean.figures
     link = material.link(setting, mean.of("scene") or "", mean.of("labeling") or "")
-    look = found.calls["Look"]
+    calls = found.calls
     return Row(
         (
             text(what),
             text(material.name(setting), href=link),
             *sure(found.completion, found.why, link),
             Cell(found.seconds_per_call, "seconds"),
-            Cell(found.calls["Walk"], "number"),
-            Cell(look, "number"),
-            Cell(None if look is None else look + 1, "number"),
-            Cell(found.calls["Pick"], "number"),
-            Cell(found.calls["Drop"], "number"),
-            Cell(found.calls["total"], "number"),
+            *_calls(calls["Walk"], calls["Look"], calls["Pick"], calls["Drop"], calls["total"]),
             Cell(found.n, "count", href=link),
         )
     )
+
+
+def _calls(
+    walk: float | None,
+    look: float | None,
+    pick: float | None,
+    drop: float | None,
+    total: float | None,
+) -> tuple[Cell, ...]:
+    """Tool calls an episode; Look once more with the first view, which nobody asks for."""
+    with_first = None if look is None else look + 1
+    return tuple(Cell(count, "number") for count in (walk, look, with_first, pick, drop, total))
 
 
 def _published(material: Material, what: str, labeling: str, scene: str) -> list[Row]:
@@ -105,12 +112,7 @@ def _published(material: Material, what: str, labeling: str, scene: str) -> list
                 text(f"{paper_name(found.model)}, published"),
                 *paper_sure(found),
                 Cell(found.seconds_per_call, "seconds"),
-                Cell(found.walk, "number"),
-                Cell(found.look, "number"),
-                Cell(found.look + 1, "number"),
-                Cell(found.pick, "number"),
-                Cell(found.drop, "number"),
-                Cell(found.tool_calls, "number"),
+                *_calls(found.walk, found.look, found.pick, found.drop, found.tool_calls),
                 Cell(found.n, "count"),
             ),
             is_paper=True,

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from adamo_vh.files import write_whole
 from adamo_vh.report.study.contents import sections
 from adamo_vh.report.study.every_cell import cell_rows, episode_rows
-from adamo_vh.report.study.material import Material, Source
+from adamo_vh.report.study.material import Material
 from adamo_vh.report.study.page import played, render_study
 from adamo_vh.report.study.texts import comma_separated, latex, markdown
 
@@ -16,14 +15,11 @@ PAGE, MARKDOWN, LATEX, TABLES = "report.html", "report.md", "report.tex", "table
 """Names of the files, and of the folder of CSV files."""
 
 
-def write_report(
-    title: str, sources: Sequence[Source], out: Path, figures: Path | None = None
-) -> tuple[Path, ...]:
+def write_report(material: Material, out: Path, figures: Path | None = None) -> tuple[Path, ...]:
     """Write the report of one study, or of several side by side.
 
     Args:
-        title: Of the report.
-        sources: The studies.
+        material: What it is made of.
         out: Folder that the report is written into.
         figures: Folder that every chart is drawn into as PDF and SVG; none by default.
 
@@ -34,12 +30,11 @@ def write_report(
         FileError: A file cannot be written.
         ConfigError: Figures are wanted, and matplotlib is not installed.
     """
-    material = Material.of(title, sources)
     found = sections(material)
     page = write_whole(out / PAGE, _bytes(render_study(material, found)))
     texts = {
-        MARKDOWN: markdown(title, played(material), found),
-        LATEX: latex(title, found),
+        MARKDOWN: markdown(material.title, played(material), found),
+        LATEX: latex(material.title, found),
         **{
             f"{TABLES}/{table.name}.csv": comma_separated(table)
             for section in found

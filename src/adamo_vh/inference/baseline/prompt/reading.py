@@ -22,6 +22,7 @@ from adamo_vh.inference.messages import (
     SystemMessage,
     TextPart,
     ToolMessage,
+    pictures_of,
 )
 
 __all__ = ["Body", "Event", "Listed", "OwnTurn", "Prompt", "Room", "first_point", "read_prompt"]
@@ -218,13 +219,13 @@ class _Reader:
 
     def _human(self, message: HumanMessage) -> None:
         texts = [part.text for part in message.parts if isinstance(part, TextPart)]
-        images = [part for part in message.parts if isinstance(part, ImagePart)]
+        images = pictures_of(message)
         first = texts[0] if texts else ""
         if self.state.read_whole(first):
             return
         left_out = any(text.startswith(_LEFT_OUT) for text in texts)
         if self.turns and first.startswith(_CLOSE_UP) and first.rstrip(".").endswith("shows"):
-            self._add_pictures(tuple(images))
+            self._add_pictures(images)
         elif self.turns and first.startswith(_NEW_VIEW):
             self._view(images)
         elif not self.instruction or images or left_out or len(texts) > 1:
