@@ -99,7 +99,7 @@ def _secrets(run: Path, result: EpisodeResult) -> set[str]:
     }
 
 
-def _assert_blind(seen: Sequence[str], run: Path, result: EpisodeResult) -> None:
+def assert_blind(seen: Sequence[str], run: Path, result: EpisodeResult) -> None:
     for secret in _secrets(run, result):
         assert [n for n, text in enumerate(seen) if secret in text] == [], secret
     for word in VERDICTS:
@@ -139,13 +139,13 @@ def test_a_model_sees_no_verdict_and_no_state(
     )
     explain_run(run, engine)
     assert len(spy.seen) == result.model_calls
-    _assert_blind(spy.seen, run, result)
+    assert_blind(spy.seen, run, result)
     # The scores are made when all is over, and nothing is put where a process would look for it.
     assert all(not files & {RESULT, DIAGNOSIS} for files in spy.files)
     assert (run / RESULT).exists() and (run / DIAGNOSIS).exists() and (run / EVENTS).exists()
     for variables in spy.variables:
         added = [f"{k}={v}" for k, v in variables.items() if before.get(k) != v]
-        _assert_blind(added, run, result)
+        assert_blind(added, run, result)
     assert [path.name for path in tmp_path.iterdir()] == [run.name]
 
 
@@ -194,7 +194,7 @@ def test_a_model_behind_a_wire_is_sent_no_verdict_and_no_state(
         seen = [json.dumps(request) for request in server.requests]
         seen += [json.dumps(dict(headers)) for headers in server.headers]
     assert result.model_calls == 4 and result.completion == 0.0
-    _assert_blind(seen, run, result)
+    assert_blind(seen, run, result)
 
 
 def test_the_walk_finds_what_is_hidden_anywhere(tmp_path: Path) -> None:

@@ -22,6 +22,8 @@ class ModelKind(StrEnum):
     RANDOM = "random"
     SCRIPTED = "scripted"
     REPLAY = "replay"
+    OUTSIDE = "outside"
+    """A program of which nothing is known but its calls."""
 
 
 @dataclass(frozen=True, slots=True)

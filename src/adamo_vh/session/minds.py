@@ -10,10 +10,11 @@ from pathlib import Path
 from adamo_vh.action_server.tools import INSPECT, SURVEY, Tool
 from adamo_vh.cognition.profile import PAPER, Profile, StateText
 from adamo_vh.episode.config import EpisodeConfig
-from adamo_vh.errors import ConfigError
+from adamo_vh.errors import ConfigError, ModelConfigError
 from adamo_vh.inference.model import Model, ModelKind, Reply, Rung
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.inference.players.checked import checked
+from adamo_vh.inference.players.outside import OUTSIDE
 from adamo_vh.inference.players.resumed import resumed
 from adamo_vh.inference.players.scripted import ScriptedModel, load_script
 from adamo_vh.inference.registry import check_remote_uri, create_model
@@ -52,6 +53,10 @@ def model_of(
         ModelConfigError: The model is unknown or lacks a key or an extra.
         RecordError: A run folder or cassette is missing or damaged.
     """
+    if uri.startswith(f"{OUTSIDE}:"):
+        raise ModelConfigError(
+            f"{uri} is a mind that comes from outside: it plays, or goes on, by adamo-vh mcp."
+        )
     if uri.startswith(_REPLAY):
         folder = Path(uri.removeprefix(_REPLAY))
         model: Model = recorded_model(read_trajectory(folder), uri, answered)
