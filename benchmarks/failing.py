@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from adamo_vh.action import Drop, Look, Pick, ToolSchema, Walk, action_name, arguments_of
+from adamo_vh.action import Drop, Look, Pick, ToolSchema, Walk, action_name
 from adamo_vh.analysis.diagnosis import Code
 from adamo_vh.benchmark.conditions import Aim, Holds, InArea, Near, OnFloor
 from adamo_vh.benchmark.oracle import Oracle
@@ -76,7 +76,7 @@ class Player:
             return said
         if isinstance(said, str):
             return Reply(AIMessage(said))
-        call = said if isinstance(said, tuple) else (action_name(type(said)), arguments_of(said))
+        call = said if isinstance(said, tuple) else (action_name(type(said)), asdict(said))
         self._count += 1
         note = {"silent": "", "plain": f"Next: {call[0]}."}.get(
             self._talk, f"I have looked at the view. Next: {call[0]} {call[1].get('object', '')}"

@@ -18,12 +18,12 @@ import argparse
 import json
 import statistics
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import takewhile
 from typing import Any
 
 import adamo_vh
-from adamo_vh.action import Action, Pick, ToolSchema, action_name, arguments_of
+from adamo_vh.action import Action, Pick, ToolSchema, action_name
 from adamo_vh.action_server import LocalActionServer
 from adamo_vh.benchmark.oracle import Oracle
 from adamo_vh.benchmark.tasks import TASKS, Task
@@ -99,7 +99,7 @@ class OraclePlayer:
     def _say(self, executed: int, number: int) -> AIMessage:
         turn = self._turn(executed)
         if turn:
-            calls = [(action_name(type(a)), arguments_of(a)) for a in turn]
+            calls = [(action_name(type(a)), asdict(a)) for a in turn]
         elif self._profile.finish_check:
             told = {"asked": "What the user asked for.", "unseen": "Nothing that matters."}
             verified = "Each feedback says done, and the last view shows it."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import pytest
@@ -19,7 +19,6 @@ from adamo_vh.action import (
     Outcome,
     Pick,
     Walk,
-    arguments_of,
     parse,
     tool_schema,
 )
@@ -49,7 +48,7 @@ def test_schemas_describe_every_argument(action: type) -> None:
 @given(numbers, numbers, numbers)
 def test_parsing_undoes_arguments(x: float, y: float, z: float) -> None:
     for action in (Look(x, y, z), Walk(x, y, z), Drop("Plate_57", x, y, z), Pick("57")):
-        assert parse(type(action).__name__, arguments_of(action), ACTIONS) == action
+        assert parse(type(action).__name__, asdict(action), ACTIONS) == action
 
 
 @given(

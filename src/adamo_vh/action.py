@@ -13,7 +13,7 @@ import math
 import re
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 from types import FunctionType
@@ -284,8 +284,3 @@ def _no_numbers(
                 yield f"{where}: {value[:40]!r} is no number; write it like 1.5"
         elif isinstance(value, float) and not math.isfinite(value):
             yield f"{where}: {value} is no finite number"
-
-
-def arguments_of(action: Action) -> dict[str, Any]:
-    """The arguments of an action as a plain dict: the inverse of `parse`."""
-    return asdict(action)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from tests.benchmark.half_plan import first_half
 from tests.tabletop import BODY, OBJECTS, carried_out, held, resting, tabletop
 
 from adamo_vh.action import Drop, Look, Pick, Walk
 from adamo_vh.benchmark.checkers import Score, score
 from adamo_vh.benchmark.conditions import Condition, Holds, Near, OnFloor
-from adamo_vh.benchmark.oracle import PATIENCE, Oracle, first_half
+from adamo_vh.benchmark.oracle import PATIENCE, Oracle
 from adamo_vh.benchmark.tasks import TASKS, Family, Task, task
 from adamo_vh.benchmark.taxonomy import Act, Difficulty
 from adamo_vh.engine import WorldState

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from tests.benchmark.half_plan import first_half
 
-from adamo_vh.benchmark.oracle import first_half
 from adamo_vh.benchmark.tasks import TASKS, Task
 from adamo_vh.benchmark.verify import play_oracle, verify_tasks
 from adamo_vh.perception import Labeling

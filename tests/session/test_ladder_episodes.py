@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ from tests.brain import Brain, Step
 from tests.fake_provider import Canned, FakeProvider, Json, completion
 
 import adamo_vh
-from adamo_vh.action import action_name, arguments_of
+from adamo_vh.action import action_name
 from adamo_vh.action_server import LocalActionServer
 from adamo_vh.benchmark.oracle import Oracle
 from adamo_vh.benchmark.tasks import task as find_task
@@ -38,7 +39,7 @@ def oracle_steps(engine: BuiltinEngine, task: str) -> list[Step]:
     steps: list[Step] = []
     while (action := oracle.next_action(engine.state(), server.seen)) is not None:
         server.execute(action)
-        steps.append((action_name(type(action)), arguments_of(action)))
+        steps.append((action_name(type(action)), asdict(action)))
     engine.reset(0)
     return steps
 

@@ -49,17 +49,6 @@ def ranks(outcomes: Iterable[Outcome]) -> tuple[RankRow, ...]:
     )
 
 
-def correlation(outcomes: Iterable[Outcome], level: Level, over: Over) -> Rank:
-    """Spearman's correlation of C-D level and completion.
-
-    Args:
-        outcomes: The episodes; tasks without such a level are left out.
-        level: As the paper prints it, or by the taxonomy's own rules.
-        over: Over each task's mean, or over the cells.
-    """
-    return _correlation(episodes_of_cells(outcomes), level, over)
-
-
 def _correlation(cells: Iterable[Cell], level: Level, over: Over) -> Rank:
     points: list[tuple[str, int, float]] = []
     for cell in cells:

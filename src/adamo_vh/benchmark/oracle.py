@@ -17,7 +17,6 @@ from adamo_vh.benchmark.conditions import (
     Atom,
     Beside,
     Condition,
-    Holds,
     InArea,
     Near,
     Not,
@@ -51,20 +50,6 @@ _HANDY_M = 1.0
 """Levels at about this height are tried first."""
 
 
-def first_half(conditions: Sequence[Condition]) -> tuple[Condition, ...]:
-    """Goals of half a plan: the first half of the conditions.
-
-    With an odd number the one in the middle is begun, not finished: its objects are only picked.
-    Played to its end, the oracle of n simple conditions satisfies exactly n // 2 of them.
-    """
-    half, odd = divmod(len(conditions), 2)
-    begun = conditions[half : half + odd]
-    return (
-        *conditions[:half],
-        *(Holds(i) for c in begun if not isinstance(c, Holds) for i in sorted(c.moves)),
-    )
-
-
 class Oracle:
     """Plays towards conditions, in their order."""
 
@@ -78,7 +63,7 @@ class Oracle:
         """Prepare to play one episode, or to go on in one.
 
         Args:
-            conditions: What to bring about, e.g. `task.goals` or `first_half` of them.
+            conditions: What to bring about, e.g. `task.goals`.
             tag_of: The tag of an object id under the labeling in use.
             body: How large the body is and how far it reaches.
             past: The states before the one that it is asked about first, the start of the episode

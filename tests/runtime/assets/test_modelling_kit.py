@@ -93,14 +93,6 @@ def test_projection_reads_upright_from_where_it_is_seen() -> None:
     np.testing.assert_allclose(back.uvs[:, 0], (1 - back.vertices[:, 0]) / 2)
 
 
-def test_wrapping_agrees_with_the_lathe() -> None:
-    lathe = kit.cylinder(1, 2, segments=32)
-    side = np.hypot(*lathe.vertices[:, :2].T) > 0.5
-    u = lathe.wrapped().uvs[side, 0]
-    seam = np.isclose(lathe.uvs[side, 0] % 1, 0)
-    np.testing.assert_allclose(u[~seam], lathe.uvs[side, 0][~seam], atol=1e-6)
-
-
 def test_fillet_keeps_the_ends_and_rounds_the_corner() -> None:
     line = kit.fillet([(0, 0), (1, 0), (1, 1)], 0.2, 8)
     np.testing.assert_allclose(line[[0, -1]], [(0, 0), (1, 1)])

@@ -10,7 +10,6 @@ from adamo_vh.geometry import Array
 from adamo_vh.runtime.human.rotations import (
     angles,
     blended,
-    from_quaternions,
     from_rotation_vectors,
     quaternions,
     rotation_vectors,
@@ -41,14 +40,11 @@ def test_they_agree_with_scipy() -> None:
         Rotation.from_matrix(matrices).as_rotvec(), abs=EXACT
     )
     assert quaternions(matrices) == pytest.approx(values, abs=EXACT)
-    assert from_quaternions(3.0 * values) == pytest.approx(matrices, abs=EXACT)
 
 
 def test_they_invert_each_other() -> None:
     turns = vectors()
     assert rotation_vectors(from_rotation_vectors(turns)) == pytest.approx(turns, abs=1e-7)
-    matrices = from_rotation_vectors(turns)
-    assert from_quaternions(quaternions(matrices)) == pytest.approx(matrices, abs=EXACT)
 
 
 @pytest.mark.parametrize("turn", HALF_TURNS)

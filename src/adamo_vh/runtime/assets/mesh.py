@@ -87,19 +87,6 @@ class Mesh:
         span = np.maximum(np.ptp(uvs, axis=0), WELD_M)
         return self.textured((uvs - uvs.min(axis=0)) / span)
 
-    def wrapped(self, axis: str = "z") -> Mesh:
-        """Cylindrical texture coordinates about an axis; u = 0.5 faces -y, the seam is at +y.
-
-        Right for a mesh without triangles across the seam, as `kit.revolve` makes them.
-        """
-        points = np.roll(self.vertices, 2 - _AXES[axis], axis=1)
-        angle = np.arctan2(points[:, 0], -points[:, 1])
-        height = points[:, 2]
-        span = max(float(np.ptp(height)), WELD_M)
-        return self.textured(
-            np.column_stack((angle / (2 * np.pi) + 0.5, (height - height.min()) / span))
-        )
-
     def shaded(self, crease_deg: float) -> Mesh:
         """Recompute the normals: smooth below the crease angle, hard above it."""
         return shade(self.vertices, self.faces, self.uvs, crease_deg)

@@ -149,12 +149,6 @@ def quaternions(rotations: Array) -> Array:
     return found.reshape(*rotations.shape[:-2], 4)
 
 
-def from_quaternions(values: Array) -> Array:
-    """Rotations from quaternions, scalar first: (..., 4) to (..., 3, 3)."""
-    unit = values / np.sqrt((values * values).sum(axis=-1))[..., None]
-    return _matrices(unit[..., 0], unit[..., 1:])
-
-
 def _matrices(w: Array, xyz: Array) -> Array:
     x, y, z = xyz[..., 0], xyz[..., 1], xyz[..., 2]
     xx, yy, zz, ww = x * x, y * y, z * z, w * w
