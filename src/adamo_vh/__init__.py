@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from adamo_vh.record.termination import Stop as Stop
     from adamo_vh.record.trajectory import Observer as Observer
     from adamo_vh.session.bodies import create_engine as create_engine
+    from adamo_vh.session.driven import DrivenBody as DrivenBody
     from adamo_vh.session.lending import Lender as Lender
     from adamo_vh.session.runs import replay_episode as replay_episode
     from adamo_vh.session.runs import resume_episode as resume_episode
@@ -60,6 +61,7 @@ _HOMES = {
     "record.termination": "Limits Stop",
     "record.trajectory": "Observer",
     "session.bodies": "create_engine",
+    "session.driven": "DrivenBody",
     "session.lending": "Lender",
     "session.runs": "replay_episode resume_episode run_episode",
     "session.session": "Session",

@@ -7,6 +7,7 @@
     ├── FileError              a file cannot be read or written: names it, the reason and the fix
     ├── SceneError             a scene file is wrong: names the file, the field and the fix
     ├── InvalidActionError     a tool call is no valid action; carries the feedback for the model
+    ├── EpisodeOverError       the episode has ended: nothing more is done in it
     ├── EngineError            the world itself failed
     │   └── RenderingError     no OpenGL to draw with
     ├── ModelError             the model could not answer; the episode is unscored
@@ -24,6 +25,7 @@ it becomes feedback and the loop goes on.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 
@@ -56,11 +58,18 @@ class InvalidActionError(AdamoError):
 
     Attributes:
         code: Typed reason, one of `adamo_vh.action.Code`.
+        call: Name and arguments as they were given, where a whole call was read; None if not.
     """
+
+    call: tuple[str, Mapping[str, Any] | None] | None = None
 
     def __init__(self, code: str, text: str) -> None:
         super().__init__(text)
         self.code = code
+
+
+class EpisodeOverError(AdamoError):
+    """The episode has ended; nothing was changed."""
 
 
 class EngineError(AdamoError):

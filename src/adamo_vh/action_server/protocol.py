@@ -107,5 +107,6 @@ def execute_call(
     try:
         action = parse(name, arguments, server.actions)
     except InvalidActionError as error:
+        error.call = (name, arguments)  # For a server that has to record or to send it.
         return server.refuse(error)
     return server.execute(action)

@@ -59,6 +59,9 @@ def replay(
         mismatches.append(f"the state after step {start} differs from the recorded one")
     frame: Frame | None = None
     for event in _events_after(recorded, start):
+        if isinstance(event, Started) and event.saved and event is not began:
+            # A further instruction begins where it stands; free play may have gone back before.
+            server.load(event.saved)
         if isinstance(event, Acted):
             result = execute_call(server, event.name, event.arguments)
             frame = None if result.observation is None else result.observation.frame

@@ -17,7 +17,7 @@ from adamo_vh.cognition.memory.protocol import NewMemory
 from adamo_vh.engine import World
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import Manifest
-from adamo_vh.inference.model import Model
+from adamo_vh.inference.model import Model, ModelInfo
 from adamo_vh.perception import Tagger
 from adamo_vh.record.trajectory import Observer
 from adamo_vh.session.bodies import own_engine
@@ -49,10 +49,10 @@ class Parts(TypedDict, total=False):
     """Keeps views for several sessions, so that the same picture is drawn once."""
 
 
-def describe(config: EpisodeConfig, model: Model, world: World, parts: Parts) -> Manifest:
-    """The manifest of an episode that is about to begin."""
+def describe(config: EpisodeConfig, who: ModelInfo, world: World, parts: Parts) -> Manifest:
+    """The manifest of an episode that is about to begin; `who` decides in it."""
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    who, tagger = model.info, parts.get("labeling")
+    tagger = parts.get("labeling")
     return Manifest(
         config,
         who.name,

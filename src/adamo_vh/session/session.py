@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -13,17 +12,15 @@ from adamo_vh.cognition.agent import Agent, AgentConfig
 from adamo_vh.cognition.budget import Budget, BudgetGuard
 from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
-from adamo_vh.engine import World, WorldEvent, WorldState
+from adamo_vh.engine import World, WorldEvent
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import (
     EpisodeResult,
     Manifest,
     read_manifest,
-    summarise,
     write_record,
 )
-from adamo_vh.episode.sealing import write_result
-from adamo_vh.errors import ConfigError, FileError, RecordError
+from adamo_vh.errors import ConfigError, RecordError
 from adamo_vh.inference.model import Model, ModelKind, Spent
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.record.run_folder import (
@@ -31,7 +28,6 @@ from adamo_vh.record.run_folder import (
     FORMAT,
     MANIFEST,
     FolderLock,
-    check_unused,
 )
 from adamo_vh.record.trajectory import (
     Ended,
@@ -52,11 +48,11 @@ from adamo_vh.session.bodies import (
     instructions,
     open_server,
     opened,
-    store_sources,
 )
 from adamo_vh.session.forecasting import check_price, forecast_episodes, refuse_early
 from adamo_vh.session.minds import fitting, lasting, opened_model, resumed_model
 from adamo_vh.session.parts import Parts, capped, describe
+from adamo_vh.session.recording import begin_record, told_result
 from adamo_vh.session.repeating import Again, later
 
 
@@ -175,15 +171,10 @@ class Session:
                 model=mind.info.name if model is not None else lasting(config.model),
                 profile=fitting(config.profile, mind, tools),
             )
-            manifest = describe(config, mind, world, parts)
+            manifest = describe(config, mind.info, world, parts)
             writer = None
             if folder is not None:
-                lock = stack.enter_context(FolderLock(folder))
-                check_unused(folder)
-                store_sources(folder, config, world)
-                write_record(folder, MANIFEST, manifest)
-                writer = TrajectoryWriter(folder, lock=lock)
-                stack.callback(writer.close)
+                writer = begin_record(stack, folder, manifest, world)
                 if record:
                     mind = taped(mind, folder / FOLDER)
             parts = capped(parts, cap)
@@ -311,15 +302,8 @@ class Session:
         Raises:
             RecordError: The last instruction has not ended.
         """
-        final = _last_state(self.engine, self.manifest)
-        result = summarise(self.manifest, self._trajectory, final, self.folder)
-        if self.folder is not None:
-            try:
-                result = write_result(self.folder, result, self._trajectory)
-            except FileError as error:
-                # A full disk may take the files, never the score.
-                again = f"once that is mended: adamo-vh run --resume {self.folder}"
-                warnings.warn(f"the result is not written: {error} ({again})", stacklevel=2)
+        again = f"adamo-vh run --resume {self.folder}"
+        result = told_result(self.manifest, self._trajectory, self.engine, self.folder, again)
         if self._paged is not None:
             try_page(self._paged)
         return result
@@ -340,11 +324,3 @@ class Session:
 def read_unfinished(folder: Path) -> Trajectory:
     """What was recorded so far; nothing, if the run was stopped before its first event."""
     return read_trajectory(folder) if (folder / EVENTS).exists() else Trajectory()
-
-
-def _last_state(world: World, manifest: Manifest) -> WorldState:
-    """The world at the end; as it began, if the engine has nothing to say any more."""
-    try:
-        return world.state()
-    except Exception:
-        return manifest.initial
