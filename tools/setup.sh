@@ -123,7 +123,7 @@ setup_gl() {
 case "${1:-}" in
 package) install_package . ;;
 dev) install_package '.[dev]' ;;
-extras) install_package '.[cluster,sign]' hypothesis pytest ;;
+extras) install_package '.[cluster,export,gym,inspect,rerun,serve,sign]' atif datasets hypothesis pytest ;;
 gl) setup_gl ;;
 *) die "Usage: tools/setup.sh package|dev|extras|gl" ;;
 esac

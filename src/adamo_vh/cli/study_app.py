@@ -1,4 +1,4 @@
-"""The commands about studies: bench, report, merge, reindex, score, verify-run."""
+"""The commands about studies: bench, report, export, merge, reindex, score, verify-run."""
 
 from __future__ import annotations
 
@@ -212,6 +212,53 @@ def report(
     from adamo_vh.cli.study_report import report_and_show
 
     report_and_show(folders, out=out, pages=pages, figures=figures, as_json=json, timings=timings)
+
+
+@study_app.command()
+def export(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Run folders, or folders of studies: of these, all scored episodes.",
+            metavar="RUN...",
+        ),
+    ],
+    to: Annotated[
+        str,
+        typer.Option(
+            help="sft (chat examples for fine-tuning), parquet (a data set for Hugging Face), "
+            "atif (trajectories), inspect (logs of Inspect AI) or rerun (.rrd recordings)."
+        ),
+    ],
+    out: Annotated[Path, typer.Option(help="A new folder.")],
+    strict_only: Annotated[
+        bool, typer.Option("--strict-only", help="Only episodes that succeeded strictly.")
+    ] = False,
+    min_completion: Annotated[
+        float, typer.Option(help="Only episodes with at least this completion, 0 to 1.")
+    ] = 0.0,
+    inline_pictures: Annotated[
+        bool,
+        typer.Option(
+            "--inline-pictures",
+            help="With sft: pictures inside the lines, as data URLs; as files without.",
+        ),
+    ] = False,
+    with_score: Annotated[
+        bool,
+        typer.Option(
+            "--with-score", help="With sft: also name the episode and its score in each line."
+        ),
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Write recorded episodes in the formats of other tools; nothing is played."""
+    from adamo_vh.adapters.exports.form import Form
+    from adamo_vh.adapters.exports.recorded import Choice
+    from adamo_vh.cli.export import export_and_show
+
+    choice, form = Choice(strict_only, min_completion), Form(inline_pictures, with_score)
+    export_and_show(runs, to, out, choice, form, as_json=json)
 
 
 @study_app.command()
