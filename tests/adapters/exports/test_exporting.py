@@ -157,3 +157,23 @@ def test_a_missing_extra_is_one_line(to: str, module: str, extra: str, tmp_path:
     with pytest.raises(ConfigError, match=rf"pip install 'adamo-vh\[{extra}\]'"):
         export([tmp_path / "run"], to, tmp_path / "out")
     assert set(FORMATS) > {to}
+
+
+def test_answers_that_were_neither_call_nor_answer_are_nothing_to_learn(
+    lent: LentWorld, tmp_path: Path
+) -> None:
+    from tests.session.test_lean_resume import SAID, Live
+
+    import adamo_vh
+
+    adamo_vh.run_episode(
+        "Put it down.",
+        model=Live(0),
+        engine=lent,
+        profile="lean",
+        resolution="160x90",
+        out=tmp_path / "run",
+    )
+    export([tmp_path / "run"], "sft", tmp_path / "out")
+    failures = sum(reply.ending.is_failure for reply in SAID)
+    assert failures and len(_lines(tmp_path / "out" / "train.jsonl")) == len(SAID) - failures
