@@ -9,9 +9,9 @@ import struct
 from typing import TYPE_CHECKING, Any
 
 from fastapi import Response
-from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from adamo_vh.model_server.injected_faults import HALF
+from adamo_vh.serving.prompt_clients import PromptHttp
 
 if TYPE_CHECKING:
     from starlette.types import Receive, Scope, Send
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _MISSING_BYTES = 400
 
 
-class CuttableProtocol(H11Protocol):
+class CuttableProtocol(PromptHttp):
     """HTTP/1.1 that lets a response reach its own connection, in order to break it."""
 
     def connection_made(self, transport: Any) -> None:

@@ -31,7 +31,8 @@ from adamo_vh.model_server.openai_replies import (
     fitted,
 )
 from adamo_vh.model_server.probe_answers import answer_to_probe
-from adamo_vh.serving.edge import Edge, Rules
+from adamo_vh.serving.admission import Rules
+from adamo_vh.serving.edge import Edge
 
 MAX_BODY_BYTES = 64 * 1024 * 1024
 """A larger request is answered with status 413."""

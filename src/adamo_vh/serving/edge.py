@@ -1,20 +1,15 @@
-"""The door of every server that the package opens: who may come in, and with how much.
-
-A server on a loopback address is not safe from the web: a page in the user's own browser can send
-requests to it, and a name of the page's own can be pointed at it. So a request must name this
-machine as its host, come from no other page, say what it carries, and keep to a size.
-"""
+"""The door of every server that the package opens: lets in what keeps to its rules."""
 
 from __future__ import annotations
 
-import hmac
+import asyncio
 import json
+import math
 from collections.abc import Awaitable, Callable, MutableMapping
-from dataclasses import dataclass
 from typing import Any
-from urllib.parse import urlsplit
 
-from adamo_vh.serving.loopback import is_loopback
+from adamo_vh.serving.admission import WITH_BODY, Asked, Refusal, Role, Rules, admitted
+from adamo_vh.serving.rate import Meter
 
 Message = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[Message]]
@@ -22,30 +17,19 @@ Send = Callable[[Message], Awaitable[None]]
 App = Callable[[Any, Receive, Send], Awaitable[None]]
 """An ASGI application."""
 
-_WITH_BODY = ("POST", "PUT", "PATCH")
 _READ_AT_MOST = 8
 """So many times the limit is read of a body that is too large, for the client to hear of it."""
+_BODY_S = 30.0
+"""A body that takes longer to come is not waited for."""
+_TOO_BIG = 1009
+"""Close code of a WebSocket whose message is too large."""
 
-
-@dataclass(frozen=True, slots=True)
-class Refusal:
-    """Why a request is not let in."""
-
-    status: int
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Rules:
-    """What a request must keep to."""
-
-    max_body_bytes: int
-    content_types: tuple[str, ...] = ("application/json",)
-    """What a request with a body may carry."""
-    token: str = ""
-    """What each request must bring as its bearer token; empty for none."""
-    too_large: str = "send less at once."
-    """What helps against a body that is too large."""
+_MORE_HEADERS = {
+    401: [(b"www-authenticate", b"Bearer")],
+    408: [(b"connection", b"close")],  # What is still to come of the body is no request.
+    413: [(b"connection", b"close")],
+    429: [(b"retry-after", b"1")],
+}
 
 
 def refusal_body(refusal: Refusal) -> bytes:
@@ -54,8 +38,14 @@ def refusal_body(refusal: Refusal) -> bytes:
     return json.dumps({"error": error}).encode()
 
 
+def role_of(scope: Any) -> Role:
+    """As what a request was let in; a player, where no edge has looked at it."""
+    role: Role = scope.get("adamo_role", Role.PLAYER)
+    return role
+
+
 class Edge:
-    """ASGI middleware that lets in what keeps to the rules."""
+    """ASGI middleware that lets in what keeps to the rules, and says as what."""
 
     def __init__(self, app: App, rules: Rules) -> None:
         """Guard an application.
@@ -64,72 +54,85 @@ class Edge:
             app: What answers those who are let in.
             rules: What they must keep to.
         """
-        self._app = app
-        self._rules = rules
+        self.app = app
+        """What is guarded."""
+        self.rules = rules
+        self._meter = Meter(rules.rate)
 
     async def __call__(self, scope: Any, receive: Receive, send: Send) -> None:
         """Answer a request, or refuse it."""
         if scope["type"] == "lifespan":
-            await self._app(scope, receive, send)
+            await self.app(scope, receive, send)
             return
-        pairs = [(n.decode("latin-1").lower(), v.decode("latin-1")) for n, v in scope["headers"]]
-        headers = dict(pairs)
-        refusal = self._judged(scope.get("method", ""), headers)
-        if refusal is None and scope["type"] == "http" and scope["method"] in _WITH_BODY:
-            body = await _read(receive, self._rules.max_body_bytes)
-            if body is None:
-                limit = self._rules.max_body_bytes
-                text = f"The request has more than {limit} bytes; {self._rules.too_large}"
-                refusal = Refusal(413, text)
-            else:
-                receive = _again(body, receive)
-        if refusal is None:
-            await self._app(scope, receive, send)
-        elif scope["type"] == "http":
-            await _refuse(refusal, send)
+        found: Role | Refusal | None = self._hasty(scope)
+        found = found or admitted(Asked.of(scope), self.rules)
+        if isinstance(found, Role):
+            scope = {**scope, "adamo_role": found}
+            if scope["type"] == "websocket":
+                await self.app(scope, self._measured(scope, receive, send), send)
+                return
+            if scope["method"] in WITH_BODY:
+                body = await _read(receive, self.rules.most_bytes(scope["path"], message=False))
+                if isinstance(body, bytes):
+                    receive = _again(body, receive)
+                else:
+                    found = self._too_large(scope["path"]) if body is None else body
+        if isinstance(found, Refusal):
+            await _refuse(found, scope, send)
         else:
-            await send({"type": "websocket.close", "code": 1008, "reason": refusal.text[:100]})
+            await self.app(scope, receive, send)
 
-    def _judged(self, method: str, headers: dict[str, str]) -> Refusal | None:
-        host = headers.get("host", "")
-        if not is_loopback(_host_name(host)):
-            return Refusal(403, f"{host!r} is not served here; use 127.0.0.1 or localhost.")
-        origin, site = headers.get("origin"), headers.get("sec-fetch-site", "none")
-        if origin is not None and origin not in (f"http://{host}", f"https://{host}"):
-            return Refusal(403, f"Pages of {origin[:200]} may not ask here; ask without a browser.")
-        if site not in ("none", "same-origin"):
-            return Refusal(403, "Pages of other sites may not ask here; ask without a browser.")
-        if self._rules.token:
-            brought = headers.get("authorization", "").removeprefix("Bearer ").encode()
-            if not hmac.compare_digest(brought, self._rules.token.encode()):
-                return Refusal(401, "The token is missing or wrong; send it as bearer token.")
-        if method in _WITH_BODY:
-            kind = headers.get("content-type", "").partition(";")[0].strip().lower()
-            if kind not in self._rules.content_types:
-                offer = " or ".join(self._rules.content_types)
-                return Refusal(415, f"The content type is {kind or 'missing'!r}; send {offer}.")
-        return None
+    def _hasty(self, scope: Any) -> Refusal | None:
+        wait_s = self._meter.wait_s(_address(scope))
+        if not wait_s:
+            return None
+        return Refusal(429, f"Too many requests; ask again in {math.ceil(wait_s)} s.")
+
+    def _too_large(self, path: str) -> Refusal:
+        limit = self.rules.most_bytes(path, message=False)
+        return Refusal(413, f"The request has more than {limit} bytes; {self.rules.too_large}")
+
+    def _measured(self, scope: Any, receive: Receive, send: Send) -> Receive:
+        """Messages of a WebSocket: not too large, and not faster than the rate."""
+        limit, address = self.rules.most_bytes(scope["path"], message=True), _address(scope)
+
+        async def next_message() -> Message:
+            message = await receive()
+            if message["type"] != "websocket.receive":
+                return message
+            while wait_s := self._meter.wait_s(address):
+                await asyncio.sleep(wait_s)  # Nothing more is read meanwhile.
+            text, data = message.get("text"), message.get("bytes")
+            if len((text or "").encode() if data is None else data) <= limit:
+                return message
+            reason = f"A message has at most {limit} bytes."
+            await send({"type": "websocket.close", "code": _TOO_BIG, "reason": reason})
+            return {"type": "websocket.disconnect", "code": _TOO_BIG, "reason": reason}
+
+        return next_message
 
 
-def _host_name(host: str) -> str:
-    try:
-        return urlsplit(f"//{host}").hostname or ""
-    except ValueError:
-        return ""
+def _address(scope: Any) -> str:
+    client = scope.get("client")
+    return str(client[0]) if client else ""
 
 
-async def _read(receive: Receive, limit: int) -> bytes | None:
-    """The whole body; None if it is too large."""
+async def _read(receive: Receive, limit: int) -> bytes | Refusal | None:
+    """The whole body; None if it is too large, a refusal if it does not come."""
     read, size, more = bytearray(), 0, True
-    while more and size <= _READ_AT_MOST * limit:
-        message = await receive()
-        if message["type"] != "http.request":
-            break
-        chunk = message.get("body", b"")
-        size += len(chunk)
-        if size <= limit:
-            read += chunk
-        more = message.get("more_body", False)
+    try:
+        async with asyncio.timeout(_BODY_S):
+            while more and size <= _READ_AT_MOST * limit:
+                message = await receive()
+                if message["type"] != "http.request":
+                    break
+                chunk = message.get("body", b"")
+                size += len(chunk)
+                if size <= limit:
+                    read += chunk
+                more = message.get("more_body", False)
+    except TimeoutError:
+        return Refusal(408, f"The body did not come within {_BODY_S:g} s; send it at once.")
     return bytes(read) if size <= limit else None
 
 
@@ -145,11 +148,18 @@ def _again(body: bytes, receive: Receive) -> Receive:
     return next_message
 
 
-async def _refuse(refusal: Refusal, send: Send) -> None:
+async def _refuse(refusal: Refusal, scope: Any, send: Send) -> None:
+    kind = "http"
+    if scope["type"] == "websocket":
+        if "websocket.http.response" not in (scope.get("extensions") or {}):
+            await send({"type": "websocket.close", "code": 1008, "reason": refusal.text[:100]})
+            return
+        kind = "websocket.http"
     body = refusal_body(refusal)
     headers = [
         (b"content-type", b"application/json"),
         (b"content-length", str(len(body)).encode()),
     ]
-    await send({"type": "http.response.start", "status": refusal.status, "headers": headers})
-    await send({"type": "http.response.body", "body": body})
+    headers.extend(_MORE_HEADERS.get(refusal.status, ()))
+    await send({"type": f"{kind}.response.start", "status": refusal.status, "headers": headers})
+    await send({"type": f"{kind}.response.body", "body": body})

@@ -8,20 +8,21 @@ import socket
 from adamo_vh.errors import ConfigError
 
 
-def listen(host: str, port: int) -> socket.socket:
-    """Open a socket that takes connections from this machine alone.
+def listen(host: str, port: int, *, locked: bool = False) -> socket.socket:
+    """Open a socket, for this machine alone unless there is a lock.
 
     Args:
-        host: A loopback address, or "localhost".
+        host: A loopback address or "localhost"; any address of this machine, if it is locked.
         port: The port; 0 for a free one.
+        locked: Whether nobody comes in without a token.
 
     Raises:
-        ConfigError: The host is not a loopback address, or the port cannot be had.
+        ConfigError: Others could reach the host and nothing is locked, or the port cannot be had.
     """
-    if not is_loopback(host):
+    if not (locked or is_loopback(host)):
         raise ConfigError(
-            f"{host} can be reached from other machines, and a served model has no lock. "
-            "Use 127.0.0.1, localhost or ::1."
+            f"{host} can be reached from other machines, and nothing is locked. "
+            "Use 127.0.0.1, localhost or ::1, or a token where the server takes one."
         )
     if not 0 <= port <= 65535:
         raise ConfigError(f"{port} is no port; use 1 to 65535, or 0 for a free one.")

@@ -17,22 +17,34 @@ _MAX_HEADER_BYTES = 64 * 1024
 
 
 @contextmanager
-def running(app: App, opened: socket.socket, name: str, protocol: Any = "h11") -> Iterator[None]:
+def running(
+    app: App,
+    opened: socket.socket,
+    name: str,
+    protocol: Any = None,
+    *,
+    max_message_bytes: int = 0,
+) -> Iterator[None]:
     """Serve while the block runs; stops and waits for the end.
 
     Args:
         app: The application, behind its `Edge`.
         opened: Whoever connects before the server runs waits for it.
         name: Of the thread.
-        protocol: How HTTP is spoken, as uvicorn takes it; one that is built on h11.
+        protocol: How HTTP is spoken; a class that is built on `PromptHttp`, which is the default.
+        max_message_bytes: The largest message of any WebSocket; 0 to serve none.
     """
     import uvicorn
+
+    from adamo_vh.serving.prompt_clients import PromptHttp, PromptWebSocket
 
     # Its log is left alone: what happened is told to those who watch.
     config = uvicorn.Config(
         app,
-        http=protocol,
-        ws="none",
+        http=protocol or PromptHttp,
+        ws=PromptWebSocket if max_message_bytes else "none",
+        ws_max_size=max_message_bytes or 1,
+        ws_per_message_deflate=False,  # Pictures are packed already, and a bomb is no message.
         loop="asyncio",
         lifespan="off",
         log_config=None,
