@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from adamo_vh.cli.exits import listed
+from adamo_vh.cli.mcp_app import mcp_app
 from adamo_vh.cli.study_app import study_app
 from adamo_vh.cli.tasks_app import tasks_app
 from adamo_vh.inference.uris import HELP
@@ -26,6 +27,7 @@ app.add_typer(models_app, name="models")
 cache_app = typer.Typer(help="What is kept to be faster.", invoke_without_command=True)
 app.add_typer(cache_app, name="cache")
 app.add_typer(study_app)
+app.add_typer(mcp_app)
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]

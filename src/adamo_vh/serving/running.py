@@ -24,6 +24,7 @@ def running(
     protocol: Any = None,
     *,
     max_message_bytes: int = 0,
+    has_lifespan: bool = False,
 ) -> Iterator[None]:
     """Serve while the block runs; stops and waits for the end.
 
@@ -33,6 +34,7 @@ def running(
         name: Of the thread.
         protocol: How HTTP is spoken; a class that is built on `PromptHttp`, which is the default.
         max_message_bytes: The largest message of any WebSocket; 0 to serve none.
+        has_lifespan: Whether the application is to be told when the server starts and ends.
     """
     import uvicorn
 
@@ -46,7 +48,7 @@ def running(
         ws_max_size=max_message_bytes or 1,
         ws_per_message_deflate=False,  # Pictures are packed already, and a bomb is no message.
         loop="asyncio",
-        lifespan="off",
+        lifespan="on" if has_lifespan else "off",
         log_config=None,
         log_level="critical",
         access_log=False,

@@ -11,7 +11,7 @@ import math
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -65,6 +65,7 @@ class OutsideEpisode:
         model: OutsideModel,
         kept: _Kept,
         play: Callable[[], EpisodeResult],
+        done: Callable[[OutsideEpisode], None] | None = None,
     ) -> None:
         """Start the thread; use `begin` or `resume`.
 
@@ -73,15 +74,17 @@ class OutsideEpisode:
             model: Who waits for the mind outside.
             kept: What the session remembers.
             play: Carries the episode out, from its first question to its result.
+            done: Is called when all is over, in the thread of the episode.
         """
         self.config = config
-        self.touched = time.monotonic()
-        """When the mind was last here."""
+        self._inside, self._left = 0, time.monotonic()
+        """How many callers are here now, and when the last one left."""
         self._model = model
         self._kept = kept
-        self._turn = threading.Lock()
+        self._turn, self._count = threading.Lock(), threading.Lock()
         self._result: EpisodeResult | None = None
         self._fault: Exception | None = None
+        self._done = done
         self._thread = threading.Thread(target=self._carry_out, args=(play,), name="adamo-outside")
         self._thread.start()
 
@@ -93,26 +96,27 @@ class OutsideEpisode:
         *,
         client: str = "",
         engine: World | None = None,
-        record: bool = False,
+        done: Callable[[OutsideEpisode], None] | None = None,
     ) -> Self:
         """Begin an episode.
 
         Args:
-            config: As for `Session.begin`; the model in it plays no part.
+            config: As for `Session.begin`; the model in it plays no part, and every turn has one
+                call, because each gets its answer before the next one is known.
             out: A new run folder; none without.
             client: What the mind calls itself.
             engine: In place of the scene's; is reset, and not closed.
-            record: Keep a cassette too.
+            done: Is called when all is over, in the thread of the episode.
 
         Raises:
             ConfigError: A setting is wrong; nothing was started.
             RecordError: `out` already holds a run, or somebody else writes it.
         """
+        config = replace(config, profile=replace(config.profile, plan=1))
         model, kept = OutsideModel(outside_name(client), _within_s(config)), _Kept()
         session = Session.begin(
             config,
             out,
-            record=record,
             engine=engine,
             model=model,
             memory=kept.make,
@@ -124,10 +128,16 @@ class OutsideEpisode:
                 session.say(config.instruction)
                 return session.result()
 
-        return cls(session.config, model, kept, play)
+        return cls(session.config, model, kept, play, done)
 
     @classmethod
-    def resume(cls, folder: Path, *, engine: World | None = None) -> Self:
+    def resume(
+        cls,
+        folder: Path,
+        *,
+        engine: World | None = None,
+        done: Callable[[OutsideEpisode], None] | None = None,
+    ) -> Self:
         """Go on with an episode that was interrupted; any mind may.
 
         What was recorded is executed again first. If it does not come out as it was, the first use
@@ -136,6 +146,7 @@ class OutsideEpisode:
         Args:
             folder: Its run folder.
             engine: As when it began.
+            done: Is called when all is over, in the thread of the episode.
 
         Raises:
             RecordError: The folder holds no run.
@@ -154,12 +165,17 @@ class OutsideEpisode:
                 observers=(_TellsEnd(model),),
             )
 
-        return cls(manifest.config, model, kept, play)
+        return cls(manifest.config, model, kept, play, done)
 
     @property
     def ended(self) -> bool:
         """Whether it has ended; then every call says so and changes nothing."""
         return self._model.is_over
+
+    @property
+    def idle_s(self) -> float:
+        """Seconds for which nobody has been here."""
+        return 0.0 if self._inside else time.monotonic() - self._left
 
     @property
     def instruction(self) -> str:
@@ -184,6 +200,14 @@ class OutsideEpisode:
         with self._turn:
             asked = self._asked()
             return _END if asked is None else self._told(asked, _pictures(asked.prompt)[-1:])
+
+    def story(self) -> str:
+        """What happened so far, as far as it is remembered; empty at the beginning and the end."""
+        asked = self._asked()
+        if asked is None or not any(isinstance(message, AIMessage) for message in asked.prompt):
+            return ""
+        said = [m for m in asked.prompt if not isinstance(m, SystemMessage)]
+        return "\n\n".join(_words(message) for message in said[1:])
 
     def call(
         self, name: str, arguments: Mapping[str, Any] | None, note: str = "", client: str = ""
@@ -236,7 +260,8 @@ class OutsideEpisode:
         Raises:
             AdamoError: It broke before there was a result.
         """
-        self._thread.join()
+        if threading.current_thread() is not self._thread:
+            self._thread.join()
         if self._fault is not None:
             raise self._fault
         assert self._result is not None
@@ -249,6 +274,8 @@ class OutsideEpisode:
             self._fault = error
         finally:
             self._model.end()
+            if self._done is not None:
+                self._done(self)
 
     def _asked(self, after: int = 0) -> Asked | None:
         """The question that stands; None if the episode has ended.
@@ -256,9 +283,13 @@ class OutsideEpisode:
         Raises:
             AdamoError: It broke off without an end.
         """
-        self.touched = time.monotonic()
-        asked = self._model.asked(after)
-        self.touched = time.monotonic()
+        with self._count:
+            self._inside += 1
+        try:
+            asked = self._model.asked(after)
+        finally:
+            with self._count:
+                self._inside, self._left = self._inside - 1, time.monotonic()
         if asked is None and self._fault is not None:
             raise self._fault
         return asked

@@ -1,0 +1,1 @@
+"""The package as a service: sessions that others use over a wire."""

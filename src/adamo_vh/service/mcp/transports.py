@@ -1,0 +1,101 @@
+"""How MCP clients reach the server: over the standard streams, or over HTTP."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from typing import Any
+
+import anyio
+from mcp.server import Server
+from mcp.server.stdio import stdio_server
+from mcp.server.streamable_http_manager import StreamableHTTPASGIApp, StreamableHTTPSessionManager
+from starlette.applications import Starlette
+from starlette.routing import Route
+
+from adamo_vh.serving.edge import App, Edge, Rules
+from adamo_vh.serving.loopback import listen
+from adamo_vh.serving.running import running
+
+PATH = "/mcp"
+MAX_BODY_BYTES = 1_000_000
+"""Of a request; a call of a tool is far smaller."""
+_MOST_CLIENTS = 64
+
+
+def http_manager(server: Server[Any]) -> StreamableHTTPSessionManager:
+    """What speaks MCP over HTTP; its `run` must be open while it does.
+
+    Args:
+        server: As of `create_server`.
+    """
+    return StreamableHTTPSessionManager(
+        server,
+        json_response=True,
+        max_request_body_size=MAX_BODY_BYTES,
+        max_sessions=_MOST_CLIENTS,
+    )
+
+
+def create_app(server: Server[Any]) -> App:
+    """A web application with MCP at `PATH` alone; it wants its lifespan to be run, and an edge.
+
+    Args:
+        server: As of `create_server`.
+    """
+    manager = http_manager(server)
+
+    @asynccontextmanager
+    async def lifespan(app: Starlette) -> AsyncIterator[None]:
+        async with manager.run():
+            yield
+
+    return Starlette(routes=[Route(PATH, StreamableHTTPASGIApp(manager))], lifespan=lifespan)
+
+
+@contextmanager
+def serve_http(
+    server: Server[Any], port: int = 0, *, host: str = "127.0.0.1", token: str = ""
+) -> Iterator[str]:
+    """Serve on a loopback address while the block runs.
+
+    Args:
+        server: As of `create_server`.
+        port: The port; 0 for a free one.
+        host: A loopback address.
+        token: What each request must bring as its bearer token; empty for none.
+
+    Yields:
+        The address for clients.
+
+    Raises:
+        ConfigError: The port cannot be had, or others could reach the host.
+    """
+    with listen(host, port) as opened:
+        app = Edge(create_app(server), Rules(MAX_BODY_BYTES, token=token))
+        with running(app, opened, "adamo-vh-mcp", has_lifespan=True):
+            shown = f"[{host}]" if ":" in host else host
+            yield f"http://{shown}:{opened.getsockname()[1]}{PATH}"
+
+
+def serve_stdio(server: Server[Any]) -> None:
+    """Serve the one client at the standard streams, until it hangs up or the process is told to.
+
+    Args:
+        server: As of `create_server`.
+    """
+
+    async def wait_for_signal(scope: anyio.CancelScope) -> None:
+        with anyio.open_signal_receiver(signal.SIGTERM, signal.SIGINT) as signals:
+            async for _ in signals:
+                scope.cancel()
+
+    async def main() -> None:
+        async with anyio.create_task_group() as group:
+            group.start_soon(wait_for_signal, group.cancel_scope)
+            async with stdio_server() as (incoming, outgoing):
+                await server.run(incoming, outgoing, server.create_initialization_options())
+            group.cancel_scope.cancel()
+
+    anyio.run(main)
