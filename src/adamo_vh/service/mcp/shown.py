@@ -54,6 +54,7 @@ def instructions(name: str, episode: OutsideEpisode) -> str:
         story=episode.story(),
         note_argument=profile.note_argument,
         finish_check=profile.finish_check,
+        state=profile.state,
         pictures=profile.pictures,
         max_steps=limits.max_steps,
         max_minutes=f"{limits.max_seconds / 60:g}",
