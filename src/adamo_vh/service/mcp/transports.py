@@ -14,7 +14,8 @@ from mcp.server.streamable_http_manager import StreamableHTTPASGIApp, Streamable
 from starlette.applications import Starlette
 from starlette.routing import Route
 
-from adamo_vh.serving.edge import App, Edge, Rules
+from adamo_vh.serving.admission import Rules
+from adamo_vh.serving.edge import App, Edge
 from adamo_vh.serving.loopback import listen
 from adamo_vh.serving.running import running
 
