@@ -2,7 +2,7 @@
 
 An engine is a `World` with one `Body` or several in it. It knows bodies and physics, and nothing of
 tags, prompts, models or tasks. The built-in one is `adamo_vh.runtime.builtin.BuiltinEngine`; others
-follow the same two protocols, and `adamo_vh.action_server.engine_check` tells what they lack.
+follow the same two protocols, and `adamo-vh conformance` tells what they lack.
 """
 
 from __future__ import annotations
@@ -340,7 +340,10 @@ class World(Protocol):
         ...
 
     def snapshot(self) -> bytes:
-        """Everything that decides what happens next: world, bodies, what they hold."""
+        """Everything that decides what happens next: world, bodies, what they hold.
+
+        Empty, if it keeps no states; see `adamo_vh.abilities`.
+        """
         ...
 
     def restore(self, snapshot: bytes) -> None:

@@ -248,6 +248,18 @@ def read_json(path: str | Path, *, max_bytes: int = _MAX_BYTES) -> Any:
     """
     text = read_text(path, max_bytes=max_bytes)
     try:
+        return parse_json(text)
+    except ValueError as error:
+        raise FileError(f"{path} is not valid JSON: {readable(str(error))}.") from None
+
+
+def parse_json(text: str) -> Any:
+    """Read JSON that anybody may have written; see `read_json`.
+
+    Raises:
+        ValueError: It is not strict JSON, or holds what `read_json` refuses.
+    """
+    try:
         value = json.loads(
             text,
             parse_constant=_refuse,
@@ -257,12 +269,10 @@ def read_json(path: str | Path, *, max_bytes: int = _MAX_BYTES) -> Any:
         )
         if _is_deeper(value, _DEEPEST_JSON):
             raise RecursionError
-        return json.loads(encodable(json.dumps(value, ensure_ascii=False)))
     except RecursionError:
         what = f"more than {_DEEPEST_JSON} brackets inside each other; open fewer"
-        raise FileError(f"{path}: {what}.") from None
-    except ValueError as error:
-        raise FileError(f"{path} is not valid JSON: {readable(str(error))}.") from None
+        raise ValueError(what) from None
+    return json.loads(encodable(json.dumps(value, ensure_ascii=False)))
 
 
 def _refuse(constant: str) -> NoReturn:

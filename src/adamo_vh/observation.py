@@ -54,6 +54,9 @@ class Percept:
     """By id; exactly those with a pixel in a layer. The object in the hand may be among them."""
     body: BodyState
     camera: Camera
+    from_boxes: bool = False
+    """The engine told boxes and numbers of pixels alone, and the layers were painted from them: box
+    and number of an object are right, which pixels of its box show it is not known."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,6 +47,15 @@ Switch = Annotated[
 Record = Annotated[
     bool, typer.Option("--record", help="Keep every request and reply as a cassette.")
 ]
+EngineOption = Annotated[
+    str,
+    typer.Option(
+        "--engine", help="built-in; or remote: waits for an engine that dials in (docs/engines.md)."
+    ),
+]
+EnginePort = Annotated[
+    int, typer.Option("--engine-port", help="Where to wait for a remote engine; 0 for any port.")
+]
 RunFolder = Annotated[
     Path | None, typer.Option(help="Run folder; a new one below runs/ by default.")
 ]
@@ -86,6 +95,8 @@ def run(
     scene: Scene = "s1",
     figure: Figure = "mara",
     labeling: Labeling = "sem",
+    engine: EngineOption = "built-in",
+    engine_port: EnginePort = 8020,
     model: Model = "baseline",
     tool_calls: ToolCalls = "auto",
     profile: Profile = "paper",
@@ -130,13 +141,14 @@ def run(
 
     caps = read_budget(pairs(budget, "budget"))
     if resume is not None:
-        refuse_others(context, "resume", "budget", "sign", "json")
-        resume_and_show(resume, caps, sign, as_json=json)
+        refuse_others(context, "resume", "budget", "sign", "json", "engine", "engine_port")
+        resume_and_show(resume, caps, sign, (engine, engine_port), as_json=json)
         return
     run_and_show(
         instruction,
         as_json=json,
         out=out,
+        where=(engine, engine_port),
         task=task,
         scene=scene,
         figure=figure,

@@ -16,13 +16,14 @@ from rich.console import Console
 
 from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.progress import Progress
-from adamo_vh.cli.terminal import line, put_json, say
+from adamo_vh.cli.terminal import complain, line, put_json, say
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.engine import World
 from adamo_vh.episode.config import EpisodeConfig
-from adamo_vh.episode.result import EpisodeResult, to_json
+from adamo_vh.episode.result import EpisodeResult, read_manifest, to_json
 from adamo_vh.episode.sealing import sign_run
+from adamo_vh.errors import ConfigError
 from adamo_vh.record.run_folder import reserve
 from adamo_vh.record.signing import Signer
 from adamo_vh.record.termination import Limits, TerminationReason
@@ -40,6 +41,7 @@ def run_and_show(
     max_steps: int,
     video: Path | None,
     sign: Path | None,
+    where: tuple[str, int],
     **settings: Any,
 ) -> None:
     """Run an episode and print what happens, or one JSON object at the end."""
@@ -55,8 +57,10 @@ def run_and_show(
     observers: list[Observer] = [] if as_json else [Progress(Console())]
     refuse_early(config, out)  # A film takes its file at once.
     with ExitStack() as stack:
-        engine = None
+        engine = stack.enter_context(engine_at(where, config.scene, config.figure, as_json=as_json))
         if video is not None:
+            if engine is not None:
+                raise ConfigError("--video films the built-in engine alone; leave --engine out.")
             engine = stack.enter_context(filming(video, config, observers))
         folder = stack.enter_context(run_folder(out, config.task or config.instruction))
         session = stack.enter_context(
@@ -95,13 +99,45 @@ def filming(path: Path, config: EpisodeConfig, observers: list[Observer]) -> Ite
         film_set.engine.close()
 
 
-def resume_and_show(folder: Path, budget: Budget, sign: Path | None, *, as_json: bool) -> None:
+@contextmanager
+def engine_at(
+    where: tuple[str, int], scene: str, figure: str, *, as_json: bool
+) -> Iterator[World | None]:
+    """The world in an engine that dials in; None for the built-in one.
+
+    Args:
+        where: What kind of engine, and the port at which it is waited for.
+        scene: What it is to load.
+        figure: Who the virtual human is.
+        as_json: Say nothing but on standard error.
+
+    Raises:
+        ConfigError: There is no such kind, or the port is taken.
+        EngineError: No engine came, or it failed.
+    """
+    kind, port = where
+    if kind == "built-in":
+        yield None
+        return
+    if kind != "remote":
+        raise ConfigError(f"--engine {kind}: use built-in or remote.")
+    from adamo_vh.service.engines.waiting import dialled_in
+
+    with dialled_in(scene, figure, port=port, tell=complain if as_json else say) as world:
+        yield world
+
+
+def resume_and_show(
+    folder: Path, budget: Budget, sign: Path | None, where: tuple[str, int], *, as_json: bool
+) -> None:
     """Go on with an interrupted run, under its own budget or a new one."""
     from adamo_vh.session.runs import resume_episode
 
     signer = Signer(sign) if sign else None
     progress = () if as_json else (Progress(Console()),)
-    result = resume_episode(folder, budget=budget or None, observers=progress)
+    config = read_manifest(folder).config
+    with engine_at(where, config.scene, config.figure, as_json=as_json) as engine:
+        result = resume_episode(folder, budget=budget or None, engine=engine, observers=progress)
     if signer is not None:
         sign_run(folder, signer)
     _show(result, folder, as_json=as_json)

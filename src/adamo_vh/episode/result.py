@@ -49,6 +49,8 @@ class Manifest:
     """What the probe of a remote model found; None if none was made."""
     engine: str = ""
     """Class of the engine, if it was handed in and no scene's name brings it back."""
+    engine_lacks: tuple[str, ...] = ()
+    """What the engine cannot do that others can; see `adamo_vh.abilities`."""
     labeling: str = ""
     """Class of the labeling, if it was handed in; `config.labeling` plays no part then."""
     format: int = FORMAT

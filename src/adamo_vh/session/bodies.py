@@ -10,6 +10,7 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import cast
 
+from adamo_vh.abilities import abilities
 from adamo_vh.action import Code, action_name
 from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS, LocalActionServer, Tool
 from adamo_vh.action_server.frame_cache import FrameCache
@@ -79,6 +80,7 @@ def opened(
 
     Raises:
         RecordError: It was recorded in an engine that only its maker can hand in.
+        ConfigError: The engine cannot do what the profile needs.
     """
     if engine is not None:
         acting_body(engine)
@@ -97,6 +99,11 @@ def opened(
                 scene, variation = str(folder / SCENE), 0
         world = create_engine(scene, config.figure, variation)
         stack.callback(world.close)
+    if config.profile.closeups and not abilities(world).closeup:
+        raise ConfigError(
+            f"This engine draws no close-ups, which profile {config.profile.name!r} is about; "
+            "take another one (profile paper) or set closeups=off."
+        )
     world.reset(config.seed)
     return world
 

@@ -16,7 +16,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from typing import Self
 
-from adamo_vh.engine import Body, BodyInfo, BodyReport, SceneInfo, World, WorldEvent, WorldState
+from adamo_vh.abilities import Abilities, abilities
+from adamo_vh.engine import (
+    Body,
+    BodyInfo,
+    BodyReport,
+    SceneInfo,
+    World,
+    WorldEvent,
+    WorldState,
+)
 from adamo_vh.errors import EngineError
 from adamo_vh.geometry import Array, Vec3
 from adamo_vh.observation import BodyState, Percept
@@ -80,6 +89,9 @@ class Lender:
             return
         if lent.fault:
             raise EngineError(lent.fault)
+        if not abilities(self.world).snapshot:
+            self._hand_over_anew(lent)
+            return
         if (last := self._holder) is not None:
             try:
                 last.kept = self.world.snapshot()
@@ -89,6 +101,16 @@ class Lender:
                 last.fault = f"The engine could not keep this episode's world: {what}"
             self._holder = None
         self.world.restore(lent.kept)
+        self._holder = lent
+
+    def _hand_over_anew(self, lent: LentWorld) -> None:
+        """Lend an engine that keeps no states: to one at a time, and from its start."""
+        if self._holder is not None:
+            raise EngineError(
+                "This engine keeps no states, so it carries one episode at a time, and it is in "
+                "another one now. Try again when that has ended."
+            )
+        self.world.reset(0)
         self._holder = lent
 
     def take_back(self, lent: LentWorld) -> None:
@@ -151,6 +173,11 @@ class LentWorld:
     def bodies(self) -> Mapping[str, Body]:
         """Its bodies by name, in the engine's order."""
         return self._bodies
+
+    @property
+    def abilities(self) -> Abilities:
+        """The engine's."""
+        return abilities(self.lender.world)
 
     def reset(self, seed: int) -> None:
         """Put this world back to its start."""

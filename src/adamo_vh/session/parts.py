@@ -9,6 +9,7 @@ from functools import cache
 from importlib.metadata import version
 from typing import TypedDict
 
+from adamo_vh.abilities import abilities
 from adamo_vh.action_server import Tool
 from adamo_vh.action_server.frame_cache import FrameCache
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
@@ -62,6 +63,7 @@ def describe(config: EpisodeConfig, who: ModelInfo, world: World, parts: Parts) 
         world.state(),
         who.capabilities,
         engine=own_engine(world) if parts.get("engine") else "",
+        engine_lacks=abilities(world).lacking(),
         labeling="" if tagger is None else type(tagger).__name__,
     )
 
