@@ -7,6 +7,7 @@ import json
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -84,9 +85,10 @@ def test_who_sends_more_than_anybody_asked_for_is_sent_away() -> None:
     with open_door() as (door, url), connect(url) as socket:
         socket.send(HELLO)
         line = door.take(10.0)
-        with pytest.raises(ConnectionClosed, match="more than it was asked for"):
-            for _ in range(100):
+        for _ in range(40):
+            with suppress(ConnectionClosed):
                 socket.send('{"id": 1}')
+        with pytest.raises(ConnectionClosed, match="more than it was asked for"):
             socket.recv(timeout=10.0)
         with pytest.raises(EngineError, match="Mine"):
             line.ask("state")
