@@ -12,8 +12,10 @@ from adamo_vh.engine import World
 from adamo_vh.service.engines.dialing import dial
 from adamo_vh.service.engines.door import EngineDoor
 from adamo_vh.service.engines.remote import RemoteWorld
-from adamo_vh.serving.edge import Edge, Rules
+from adamo_vh.serving.admission import Rules
+from adamo_vh.serving.edge import Edge
 from adamo_vh.serving.loopback import listen
+from adamo_vh.serving.rate import Rate
 from adamo_vh.serving.running import running
 
 
@@ -40,7 +42,7 @@ def with_body(engine: Any, **replaced: Any) -> Any:
 def open_door(answer_s: float = 20.0, token: str = "") -> Iterator[tuple[EngineDoor, str]]:
     """A door on a free port, and its address."""
     door, opened = EngineDoor(answer_s), listen("127.0.0.1", 0)
-    rules = Rules(max_body_bytes=1000, token=token)
+    rules = Rules(1000, token=token, rate=Rate(per_s=0), max_message_bytes=64_000_000)
     with opened, running(Edge(door, rules), opened, "door", max_message_bytes=64_000_000):
         yield door, f"ws://127.0.0.1:{opened.getsockname()[1]}/engine"
 

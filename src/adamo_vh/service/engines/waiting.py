@@ -10,8 +10,10 @@ from adamo_vh.service.engines.door import PATH, EngineDoor
 from adamo_vh.service.engines.line import ANSWER_S
 from adamo_vh.service.engines.reading import MAX_BINARY
 from adamo_vh.service.engines.remote import RemoteWorld
-from adamo_vh.serving.edge import Edge, Rules
+from adamo_vh.serving.admission import Rules
+from adamo_vh.serving.edge import Edge
 from adamo_vh.serving.loopback import listen
+from adamo_vh.serving.rate import Rate
 from adamo_vh.serving.running import running
 
 PORT = 8020
@@ -46,7 +48,8 @@ def dialled_in(
     """
     opened = listen("127.0.0.1", port)
     token = os.environ.get(TOKEN, "")
-    rules = Rules(max_body_bytes=1000, token=token)
+    # An engine only answers what it is asked: that is its rate.
+    rules = Rules(1000, token=token, rate=Rate(per_s=0), max_message_bytes=MAX_BINARY)
     door = EngineDoor(answer_s)
     with opened, running(Edge(door, rules), opened, "adamo-engines", max_message_bytes=MAX_BINARY):
         address = f"ws://127.0.0.1:{opened.getsockname()[1]}{PATH}"
