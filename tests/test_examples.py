@@ -19,6 +19,7 @@ SAYS = {
     "06_own_labeling.py": ["cup-45 is in your hand", "answered - I hold it."],
     "07_own_engine.py": ["the body says:", "answered - The red block lies beside the yellow one."],
     "08_many_at_once.py": ["T1 1.0 after", "T2 1.0 after", "T4 1.0 after", "T8 1.0 after"],
+    "09_reinforcement_learning.py": ["reward 0.5", "ended: answered, completion 1.0, strict 1.0"],
 }
 
 

@@ -38,6 +38,19 @@ class TerminationReason(StrEnum):
         """Whether the episode counts."""
         return self not in (TerminationReason.BROKEN, TerminationReason.RUN_BUDGET)
 
+    @property
+    def is_truncated(self) -> bool:
+        """Whether a cap ended it before the agent did."""
+        return self in _CAPS
+
+
+_CAPS = (
+    TerminationReason.LOOP,
+    TerminationReason.BUDGET,
+    TerminationReason.STEP_LIMIT,
+    TerminationReason.TIME_LIMIT,
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Stop:

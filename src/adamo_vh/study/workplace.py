@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from collections import OrderedDict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cache
 
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.session.bodies import create_engine
@@ -96,3 +98,13 @@ class Engines:
         for one in spare:
             if one.lender is not None:
                 one.lender.close()
+
+
+def process_engines() -> Engines:
+    """The engines of this process; a process that was forked from it has its own."""
+    return _engines_of(os.getpid())
+
+
+@cache
+def _engines_of(process: int) -> Engines:
+    return Engines()

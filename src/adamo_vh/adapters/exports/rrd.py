@@ -11,9 +11,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from adamo_vh.adapters.exports.extras import needed
 from adamo_vh.adapters.exports.form import Form
 from adamo_vh.adapters.exports.recorded import Episode
+from adamo_vh.adapters.extras import needed
 from adamo_vh.engine import WorldState
 from adamo_vh.files import make_folder
 from adamo_vh.geometry import Vec3

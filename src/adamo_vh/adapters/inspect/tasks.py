@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -32,7 +32,7 @@ from adamo_vh.record.run_folder import reserve
 from adamo_vh.session.session import Session
 from adamo_vh.study.plan import Planned, plan, seed_of
 from adamo_vh.study.study_file import read_study
-from adamo_vh.study.workplace import Engines
+from adamo_vh.study.workplace import process_engines
 
 _ANY_MODEL = "random"
 """Stands for the model in the plan, which Inspect names."""
@@ -187,19 +187,13 @@ def _played(
 ) -> tuple[EpisodeResult, list[ChatMessage]]:
     """One episode, in a thread."""
     with (
-        _engines().lent(config) as world,
+        process_engines().lent(config) as world,
         Session.begin(config, folder, model=mind, engine=world) as session,
     ):
         session.say(config.instruction)
         result = session.result()
     (told,) = recorded([folder])
     return result, chat(dialogue(told))
-
-
-@cache
-def _engines() -> Engines:
-    """The engines of this process, each shared by the samples that play in it at once."""
-    return Engines()
 
 
 @scorer(metrics={"completion": [mean(), stderr()], "strict": [mean(), stderr()]})
