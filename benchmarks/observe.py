@@ -4,7 +4,7 @@
 
 All figures are medians in milliseconds from one process, `ratio` is the median of observations and
 bare pictures drawn in turn; `import_s` and `help_s` are medians of fresh processes. Stages:
-`render_ms` bare colour picture with read-back, `ids_ms` id passes, `visibility_ms` counts and
+`render_ms` bare colour picture with read-back, `ids_ms` what ids add, `visibility_ms` counts and
 boxes, `points_ms` 36 rays, `overlay_ms` boxes, tags and JPEG, `observe_ms` all of it through the
 public path.
 """
@@ -81,11 +81,12 @@ def measure(scene: str, repeats: int) -> dict[str, float]:
     figures = {
         "observe_ms": median_ms(observe, repeats),
         "render_ms": median_ms(lambda: renderer.color(data, camera), repeats),
-        "ids_ms": median_ms(lambda: renderer.layers(data, camera), repeats),
+        "draw_ms": median_ms(lambda: renderer.draw(data, camera), repeats),
         "visibility_ms": median_ms(lambda: visible_objects(percept, config.min_pixels), repeats),
         "points_ms": median_ms(lambda: reference_points(camera, engine.body.rays, 6), repeats),
         "perceive_ms": median_ms(overlay, repeats),
     }
+    figures["ids_ms"] = figures["draw_ms"] - figures["render_ms"]
     figures["overlay_ms"] = figures["perceive_ms"] - figures["visibility_ms"] - figures["points_ms"]
     figures["ratio"] = paired_ratio(observe, lambda: renderer.color(data, camera), repeats)
     engine.close()

@@ -141,7 +141,7 @@ def shares() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as place:
         for _ in play_all(Path(place) / "warm", episodes[:: len(episodes) // 2]):
             pass
-        clock.watch("render", SceneRenderer, "color", "layers")
+        clock.watch("render", SceneRenderer, "draw", "color", "layers")
         clock.watch("perception", local.LocalActionServer, "_view")
         clock.watch("physics", BuiltinBody, "look", "walk", "pick", "drop", "rays", "see")
         clock.watch("physics", BuiltinEngine, "state", "snapshot", "restore", "reset")

@@ -368,10 +368,9 @@ def test_the_first_picture_needs_no_scipy() -> None:
 
 
 def test_drawing_leaves_the_model_as_it_is(engine: BuiltinEngine) -> None:
-    """The ids are drawn without textures; the model keeps them."""
-    model = engine.world.model
-    sizes = model.tex_width.copy(), model.tex_height.copy()
-    SceneRenderer(model, engine.world.object_of_geom).close()
-    assert (model.tex_width == sizes[0]).all()
-    assert (model.tex_height == sizes[1]).all()
-    assert sizes[0].min() > 1
+    """What MuJoCo would draw on is left out; the model keeps its sizes."""
+    sizes = (1920, 1080)
+    SceneRenderer(engine.world.model, engine.world.object_of_geom).close()
+    vis = engine.world.model.vis
+    assert (vis.global_.offwidth, vis.global_.offheight) == sizes
+    assert min(vis.quality.offsamples, vis.quality.shadowsize) > 0

@@ -8,15 +8,18 @@ import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from adamo_vh.action_server import LocalActionServer
 from adamo_vh.errors import EngineError, RenderingError
-from adamo_vh.geometry import Vec3
+from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.graphics import in_graphics_thread
+from adamo_vh.runtime.rendering import Drawing
 
 SMALL = (320, 180)
 
@@ -53,12 +56,12 @@ def test_an_engine_that_is_forgotten_spoils_no_picture(
 def test_what_a_forgotten_engine_drew_with_is_freed() -> None:
     other = BuiltinEngine("s1")
     other.capture(*SMALL)
-    (color, _), gl = other.stage.renderer._contexts, other.stage.renderer._gl
+    uploaded, gl = other.stage.renderer._painter.context, other.stage.renderer._gl
     del other
     gc.collect()
     in_graphics_thread(lambda: None)
     assert gl._context is None
-    assert color.offFBO == 0
+    assert uploaded.baseMesh == uploaded.offFBO == 0
 
 
 def test_an_engine_works_in_every_thread(engine: BuiltinEngine) -> None:
@@ -152,23 +155,26 @@ def freed_by_others(engine: BuiltinEngine) -> None:
 
     def free() -> None:
         renderer._gl.make_current()
-        for context in renderer._contexts:
-            context.free()
+        renderer._painter.context.free()
 
     in_graphics_thread(free)
 
 
 def black(engine: BuiltinEngine) -> None:
-    engine.stage.renderer.color = (  # type: ignore[method-assign]
-        lambda data, camera, **_: np.zeros((camera.height_px, camera.width_px, 3), np.uint8)
-    )
+    draw = engine.stage.renderer.draw
+
+    def dark(data: Any, camera: Camera, **how: bool) -> Drawing:
+        drawn = draw(data, camera, **how)
+        return replace(drawn, rgb=np.zeros_like(drawn.rgb))
+
+    engine.stage.renderer.draw = dark  # type: ignore[method-assign]
 
 
 def of_another_state(engine: BuiltinEngine) -> None:
     """Ids as they were from elsewhere."""
     renderer = engine.stage.renderer
-    kept = renderer.layers(engine.data, engine.body.stance.camera(*SMALL))
-    renderer.layers = lambda *_, **__: kept  # type: ignore[method-assign]
+    kept = renderer.draw(engine.data, engine.body.stance.camera(*SMALL))
+    renderer.draw = lambda *_, **__: kept  # type: ignore[method-assign]
     engine.body.look(Vec3(0.3, -0.4, 0.8))
 
 

@@ -231,18 +231,3 @@ def backend_name() -> str:
         return name
 
     return in_graphics_thread(opened)
-
-
-def is_alive(kind: str, name: int) -> bool:
-    """Whether OpenGL still has an object in the current context.
-
-    Args:
-        kind: "Framebuffer", "Texture", "List" or "Buffer".
-        name: Its number.
-    """
-    from OpenGL.platform import PLATFORM
-
-    asked = getattr(PLATFORM.GL, f"glIs{kind}")
-    asked.restype = ctypes.c_ubyte
-    asked.argtypes = [ctypes.c_uint]
-    return bool(asked(name))

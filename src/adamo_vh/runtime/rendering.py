@@ -1,18 +1,16 @@
 """Headless drawing: the colour picture and, for each pixel, which interactable object it shows.
 
-The scene is drawn twice with `mjr_render`: in colour with a shadow and anti-aliasing, then as flat
-ids with neither, which costs a sixth of the first and keeps ids from blending at edges. MuJoCo's
-own Python `Renderer` decodes ids geom by geom; this one looks one byte a pixel up.
+Both come out of one pass (see `adamo_vh.runtime.painting`); outlines are smoothed afterwards, so
+that ids never blend at edges.
 """
 
 from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,17 +18,15 @@ from numpy.typing import NDArray
 from adamo_vh.errors import RenderingError
 from adamo_vh.geometry import Camera
 from adamo_vh.observation import NOTHING
-from adamo_vh.runtime.graphics import free_later, in_graphics_thread, is_alive, open_gl
+from adamo_vh.runtime.graphics import free_later, in_graphics_thread, open_gl
 from adamo_vh.runtime.human.skin_mujoco import HEAD_GROUP
+from adamo_vh.runtime.painting import Painter, Painting
+from adamo_vh.runtime.smoothing import smooth
 
 if TYPE_CHECKING:
     import mujoco
 
-MSAA_SAMPLES = 4
-SHADOW_MAP_PX = 3072
 _MAX_GEOMS = 4000
-
-_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,8 +39,18 @@ class IdLayer:
     """The ids that occur."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawing:
+    """A picture, and what it shows."""
+
+    rgb: NDArray[np.uint8]
+    """(H, W, 3)."""
+    layers: tuple[IdLayer, ...]
+    """In front and, if glass is in view, without the glass."""
+
+
 class SceneRenderer:
-    """Draws one MuJoCo model from any camera, in colour and as ids.
+    """Draws one MuJoCo model from any camera.
 
     May be used in any thread, by one at a time, and forgotten in any: the graphics thread draws and
     frees.
@@ -62,222 +68,117 @@ class SceneRenderer:
         """
         import mujoco
 
-        self._mujoco = mujoco
         self._model = model
-        self._object_of_geom = object_of_geom
-        self._gl, self._contexts = in_graphics_thread(partial(_opened, model))
+        self._gl, self._painter = in_graphics_thread(partial(_opened, model, object_of_geom))
         # MuJoCo would free what it drew with in whatever context is current when it is forgotten.
-        self._free = weakref.finalize(self, free_later, partial(_freed, self._gl, self._contexts))
+        self._free = weakref.finalize(self, free_later, partial(_freed, self._gl, self._painter))
         self._free.atexit = False
         self._scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
         self._option = mujoco.MjvOption()
         self._camera = mujoco.MjvCamera()
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FREE.value
-        self._buffer = np.empty((0, 0, 3), np.uint8)
-        material = model.geom_matid
-        alpha = np.where(material >= 0, model.mat_rgba[material, 3], model.geom_rgba[:, 3])
-        drawn = model.geom_group < 3
-        see_through = np.unique(object_of_geom[(alpha < 1) & drawn])
-        self._glass = frozenset(int(i) for i in see_through) - {NOTHING}
 
-    def _aim(self, data: mujoco.MjData, camera: Camera) -> mujoco.MjrRect:
-        """Point the MuJoCo camera, update the scene, and fit the buffers."""
-        mujoco = self._mujoco
-        forward = camera.world_from_camera[:, 2]
-        self._camera.distance = 1.0
-        self._camera.lookat[:] = camera.position.array() + forward
-        self._camera.azimuth = math.degrees(camera.yaw_rad)
-        self._camera.elevation = math.degrees(camera.pitch_rad)
-        self._model.vis.global_.fovy = math.degrees(camera.fov_y_rad)
-        mujoco.mjv_updateScene(
-            self._model,
-            data,
-            self._option,
-            None,
-            self._camera,
-            mujoco.mjtCatBit.mjCAT_ALL.value,
-            self._scene,
-        )
-        self._gl.make_current()
-        self._check()
-        width, height = camera.width_px, camera.height_px
-        for context in self._contexts:
-            if width > context.offWidth or height > context.offHeight:
-                mujoco.mjr_resizeOffscreen(width, height, context)
-        return mujoco.MjrRect(0, 0, width, height)
-
-    def _check(self) -> None:
-        """Make sure that nobody has freed what this draws with."""
-        for context in self._contexts:
-            parts = [("Framebuffer", context.offFBO), ("List", context.basePlane)]
-            if context.ntexture:
-                parts += [("Texture", int(context.texture[i])) for i in (0, context.ntexture - 1)]
-            if not all(is_alive(kind, name) for kind, name in parts):
-                raise RenderingError(
-                    "Another OpenGL user of this process has freed what the engine draws with: "
-                    "its pictures would be wrong. Make a new engine."
-                )
-
-    def _draw(self, rect: mujoco.MjrRect, context: mujoco.MjrContext) -> NDArray[np.uint8]:
-        mujoco = self._mujoco
-        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, context)
-        mujoco.mjr_render(rect, self._scene, context)
-        if self._buffer.shape[:2] != (rect.height, rect.width):
-            self._buffer = np.empty((rect.height, rect.width, 3), np.uint8)
-        mujoco.mjr_readPixels(self._buffer, None, rect, context)
-        return self._buffer[::-1]
-
-    def color(
+    def draw(
         self, data: mujoco.MjData, camera: Camera, *, head: bool = False, shadow: bool = True
-    ) -> NDArray[np.uint8]:
-        """Draw the colour picture.
+    ) -> Drawing:
+        """Draw the picture and what it shows.
 
         Args:
             data: The state of the world.
             camera: From where.
             head: Draw the figure's head too; not when the camera is in it.
-            shadow: Draw shadows, which draws the whole scene once more.
-
-        Returns:
-            (H, W, 3) uint8.
+            shadow: Draw shadows.
 
         Raises:
             RenderingError: The renderer was closed, or its graphics memory was freed by others.
         """
-        return self._asked(partial(self._color, data, camera, head, shadow))
+        painting = self._painted(data, camera, head=head, shadow=shadow)
+        return Drawing(_finished(painting), self._layers(painting))
 
-    def _asked(self, job: Callable[[], _T]) -> _T:
-        if not self._free.alive:
-            raise RenderingError("The renderer was closed; make a new engine.")
-        return in_graphics_thread(job)
-
-    def _color(
-        self, data: mujoco.MjData, camera: Camera, head: bool, shadow: bool
+    def color(
+        self, data: mujoco.MjData, camera: Camera, *, head: bool = False, shadow: bool = True
     ) -> NDArray[np.uint8]:
-        self._option.skingroup[HEAD_GROUP] = head
-        rect = self._aim(data, camera)
-        self._scene.flags[self._mujoco.mjtRndFlag.mjRND_SHADOW.value] = shadow
-        return self._draw(rect, self._contexts[0]).copy()
+        """Only the picture, (H, W, 3); see `draw`."""
+        return _finished(self._painted(data, camera, head=head, shadow=shadow))
 
     def layers(
         self, data: mujoco.MjData, camera: Camera, *, head: bool = False
     ) -> tuple[IdLayer, ...]:
-        """Which object each pixel shows: in front and, if glass is in view, without the glass."""
-        return self._asked(partial(self._layers, data, camera, head))
+        """Only what it would show; see `draw`."""
+        return self._layers(self._painted(data, camera, head=head, shadow=False))
 
-    def _layers(self, data: mujoco.MjData, camera: Camera, head: bool) -> tuple[IdLayer, ...]:
+    def _painted(
+        self, data: mujoco.MjData, camera: Camera, *, head: bool, shadow: bool
+    ) -> Painting:
+        if not self._free.alive:
+            raise RenderingError("The renderer was closed; make a new engine.")
+        return in_graphics_thread(partial(self._paint, data, camera, head, shadow))
+
+    def _paint(self, data: mujoco.MjData, camera: Camera, head: bool, shadow: bool) -> Painting:
+        import mujoco
+
         self._option.skingroup[HEAD_GROUP] = head
-        rect = self._aim(data, camera)
-        front = self._ids(rect)
-        glass = self._glass & front.present
-        if not glass:
+        self._camera.distance = 1.0
+        self._camera.lookat[:] = camera.position.array() + camera.world_from_camera[:, 2]
+        self._camera.azimuth = math.degrees(camera.yaw_rad)
+        self._camera.elevation = math.degrees(camera.pitch_rad)
+        self._model.vis.global_.fovy = math.degrees(camera.fov_y_rad)
+        every = mujoco.mjtCatBit.mjCAT_ALL.value
+        shown = (self._model, data, self._option, None, self._camera)
+        mujoco.mjv_updateScene(*shown, every, self._scene)
+        self._gl.make_current()
+        self._painter.check()
+        groups = self._option.skingroup.astype(bool)
+        size = camera.width_px, camera.height_px
+        return self._painter.paint(data, self._scene, size, groups=groups, shadow=shadow)
+
+    def _layers(self, painting: Painting) -> tuple[IdLayer, ...]:
+        parts = self._painter.parts
+        front = _decoded(painting.labels, parts.object_of, len(parts))
+        if painting.behind is None or not parts.glass & front.present:
             return (front,)
-        rows, columns = _bounds(np.isin(front.ids, list(glass)))
-        self._hide_glass()
-        self._crop(camera, rows, columns)
-        height, width = rows.stop - rows.start, columns.stop - columns.start
-        window = self._ids(self._mujoco.MjrRect(0, 0, width, height))
-        behind = front.ids.copy()
-        behind[rows, columns] = window.ids
-        return front, IdLayer(behind, front.present | window.present)
-
-    def _ids(self, rect: mujoco.MjrRect) -> IdLayer:
-        flag = self._mujoco.mjtRndFlag
-        flags = self._scene.flags
-        kept = flags.copy()
-        flags[[flag.mjRND_SEGMENT.value, flag.mjRND_IDCOLOR.value]] = True
-        flags[flag.mjRND_SHADOW.value] = False
-        try:
-            return self._decode(self._draw(rect, self._contexts[1]))
-        finally:
-            flags[:] = kept
-
-    def _hide_glass(self) -> None:
-        """Take see-through objects out of the scene; the next aim brings them back."""
-        is_geom = self._mujoco.mjtObj.mjOBJ_GEOM.value
-        for geom in self._scene.geoms[: self._scene.ngeom]:
-            thing = self._object_of_geom[geom.objid] if geom.objtype == is_geom else NOTHING
-            if geom.rgba[3] < 1.0 or thing in self._glass:
-                geom.size[:] = 0.0
-                geom.rgba[3] = 0.0
-                geom.segid = -1
-
-    def _crop(self, camera: Camera, rows: slice, columns: slice) -> None:
-        """Narrow the view to a window of the picture, given in pixels."""
-        for eye in self._scene.camera:
-            pixel = (eye.frustum_top - eye.frustum_bottom) / camera.height_px
-            top = eye.frustum_top
-            eye.frustum_top = top - pixel * rows.start
-            eye.frustum_bottom = top - pixel * rows.stop
-            middle = (columns.start + columns.stop) / 2 - camera.width_px / 2
-            eye.frustum_center = eye.frustum_center + pixel * middle
-            eye.frustum_width = pixel * (columns.stop - columns.start) / 2
-
-    def _decode(self, pixels: NDArray[np.uint8]) -> IdLayer:
-        import cv2
-
-        count = self._scene.ngeom
-        table = np.full(max(256, count + 1), NOTHING, np.int16)
-        is_geom = self._mujoco.mjtObj.mjOBJ_GEOM.value
-        for geom in self._scene.geoms[:count]:
-            if geom.segid >= 0 and geom.objtype == is_geom:
-                table[geom.segid + 1] = self._object_of_geom[geom.objid]
-        if count < 255:
-            # OpenCV looks bytes up ten times faster than numpy.
-            index = cv2.extractChannel(pixels, 0)
-            histogram = cv2.calcHist([index], [0], None, [256], [0, 256]).ravel()
-            ids = cv2.LUT(index, table[:256])
-        else:
-            wide = pixels[:, :, 0] + pixels[:, :, 1].astype(np.intp) * 256
-            histogram = np.bincount(wide.ravel(), minlength=len(table))
-            ids = table[wide]
-        present = {int(i) for i in table[np.flatnonzero(histogram)]} - {NOTHING}
-        return IdLayer(np.asarray(ids, np.int16), frozenset(present))
+        return front, _decoded(painting.behind, parts.object_of, len(parts))
 
     def close(self) -> None:
         """Free the graphics memory."""
         self._free()
 
 
-def _opened(model: mujoco.MjModel) -> tuple[Any, tuple[mujoco.MjrContext, mujoco.MjrContext]]:
-    """A context of OpenGL, and in it those for colour and for ids."""
-    gl = open_gl(model.vis.global_.offwidth, model.vis.global_.offheight)
+def _opened(model: mujoco.MjModel, object_of_geom: NDArray[np.int16]) -> tuple[Any, Painter]:
+    """A context of OpenGL, and in it what draws the model."""
+    gl = open_gl(1, 1)
     gl.make_current()
-    return gl, (_context(model, MSAA_SAMPLES, SHADOW_MAP_PX), _plain_context(model))
+    return gl, Painter(model, object_of_geom)
 
 
-def _freed(gl: Any, contexts: tuple[mujoco.MjrContext, ...]) -> None:
+def _freed(gl: Any, painter: Painter) -> None:
     """Free what `_opened` gave, in its own context."""
     gl.make_current()
-    for context in contexts:
-        context.free()
+    painter.context.free()
     gl.free()
 
 
-def _bounds(mask: NDArray[np.bool_]) -> tuple[slice, slice]:
-    """Rows and columns that hold all true pixels; there is at least one."""
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    return slice(int(rows[0]), int(rows[-1]) + 1), slice(int(columns[0]), int(columns[-1]) + 1)
+def _finished(painting: Painting) -> NDArray[np.uint8]:
+    """(H, W, 3) the picture with smooth outlines, top row first."""
+    import cv2
+
+    smooth(painting.colours, painting.labels)
+    rgb = cv2.flip(cv2.cvtColor(painting.colours, cv2.COLOR_RGBA2RGB), 0)
+    return np.asarray(rgb, np.uint8)
 
 
-def _plain_context(model: mujoco.MjModel) -> mujoco.MjrContext:
-    """A context for ids, which show no texture: uploading them again would take time and memory."""
-    kept = model.tex_width.copy(), model.tex_height.copy()
-    model.tex_width[:], model.tex_height[:] = 1, 1
-    try:
-        return _context(model, 0, 0)
-    finally:
-        model.tex_width[:], model.tex_height[:] = kept
+def _decoded(labels: NDArray[np.uint8], object_of: NDArray[np.int16], parts: int) -> IdLayer:
+    """Which object each pixel shows, top row first."""
+    import cv2
 
-
-def _context(model: mujoco.MjModel, samples: int, shadow_px: int) -> mujoco.MjrContext:
-    """Upload a model for drawing, with its own anti-aliasing and shadow map."""
-    import mujoco
-
-    quality = model.vis.quality
-    kept = quality.offsamples, quality.shadowsize
-    quality.offsamples, quality.shadowsize = samples, shadow_px
-    try:
-        return mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
-    finally:
-        quality.offsamples, quality.shadowsize = kept
+    if parts < 255:
+        # OpenCV looks bytes up ten times faster than numpy.
+        index = cv2.extractChannel(labels, 0)
+        histogram = cv2.calcHist([index], [0], None, [256], [0, 256]).ravel()
+        ids = cv2.LUT(index, object_of[:256])
+    else:
+        wide = labels[:, :, 0] + labels[:, :, 1].astype(np.intp) * 256
+        histogram = np.bincount(wide.ravel(), minlength=len(object_of))
+        ids = object_of[wide]
+    present = {int(i) for i in object_of[np.flatnonzero(histogram)]} - {NOTHING}
+    return IdLayer(np.asarray(cv2.flip(ids, 0), np.int16), frozenset(present))

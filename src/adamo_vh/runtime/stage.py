@@ -103,15 +103,15 @@ class Stage:
     def _percept(self, shown: BodyFrame, camera: Camera, *, head: bool, shadow: bool) -> Percept:
         data = self._world.data
         self._pose(shown)
-        rgb = self.renderer.color(data, camera, head=head, shadow=shadow)
-        layers = self.renderer.layers(data, camera, head=head)
-        present = frozenset[int]().union(*(layer.present for layer in layers))
+        drawn = self.renderer.draw(data, camera, head=head, shadow=shadow)
+        present = frozenset[int]().union(*(layer.present for layer in drawn.layers))
         seen = {
             i: SeenObject(i, self._world.objects[i].class_name, self._world.box(i))
             for i in sorted(present)
         }
         body = shown.body.state(self._world.box_of(shown.body.held))
-        return Percept(rgb, tuple(layer.ids for layer in layers), seen, body, camera)
+        layers = tuple(layer.ids for layer in drawn.layers)
+        return Percept(drawn.rgb, layers, seen, body, camera)
 
     def picture(self, body: Stance, camera: Camera, *, head: bool = True) -> NDArray[np.uint8]:
         """Only the colour picture of this moment, (H, W, 3); without the head to look out of it."""
