@@ -46,15 +46,25 @@ class Create:
     task: Annotated[_Name | None, Field(description="T1 to T15: a scored episode.")] = None
     instruction: Annotated[_Text | None, Field(description="What to do, in free play.")] = None
     scene: Annotated[_Name | None, Field(description="Built-in scene.")] = None
-    labeling: Annotated[_Name | None, Field(description="sem or opaq.")] = None
-    profile: Annotated[_Name | None, Field(description="paper, lean, ...")] = None
+    labeling: Annotated[
+        Literal["sem", "opaq"] | None, Field(description="How objects are tagged.")
+    ] = None
+    profile: Annotated[
+        Literal["paper", "paper-exact", "lean", "single"] | None,
+        Field(description="How the player is spoken to, and with which tools."),
+    ] = None
     switches: Annotated[
         dict[str, Any] | None,
         Field(description="Single switches of the profile, set otherwise.", max_length=40),
     ] = None
     seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 0
     variation: Annotated[int, Field(ge=0, le=100_000)] = 0
-    resolution: Annotated[_Name | None, Field(description="WIDTHxHEIGHT.")] = None
+    resolution: Annotated[
+        str | None,
+        Field(
+            description="WIDTHxHEIGHT, 64x64 up to 7680x4320.", pattern="^[0-9]{2,4}x[0-9]{2,4}$"
+        ),
+    ] = None
     player: Annotated[_Name, Field(description="Who plays, as the record calls him.")] = "outside"
     request: _RequestId = ""
     type: Literal["create"] = "create"
@@ -131,7 +141,9 @@ class Finish:
 
     answer: _Text = ""
     reason: Annotated[
-        _Name | None, Field(description="Why, if a limit of the player's own ended it.")
+        Literal["answered", "empty_reply", "protocol", "loop", "budget", "step_limit", "time_limit"]
+        | None,
+        Field(description="Why, if a limit of the player's own ended it."),
     ] = None
     why: Annotated[_Text, Field(description="In words, where there is more to say.")] = ""
     request: _RequestId = ""

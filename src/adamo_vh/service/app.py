@@ -16,6 +16,7 @@ from typing import Any
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 
 from adamo_vh.action_server.wire import Failed, Problem, to_json
 from adamo_vh.errors import AdamoError
@@ -58,6 +59,18 @@ def create_app(host: Host, rules: Rules | None = None, faces: Sequence[Face] = F
         rules: Who may come in; whoever is on this machine, by default.
         faces: What is served.
     """
+    rules = rules or Rules(MAX_BODY_BYTES)
+    roomy = dict(size for face in faces for size in face.max_bytes)
+    return Edge(create_api(host, faces), replace(rules, roomy={**rules.roomy, **roomy}))
+
+
+def create_api(host: Host, faces: Sequence[Face] = FACES) -> FastAPI:
+    """Make the application itself, which nothing guards.
+
+    Args:
+        host: The sessions.
+        faces: What is served.
+    """
     opened: list[AbstractAsyncContextManager[None]] = []
 
     @asynccontextmanager
@@ -80,9 +93,7 @@ def create_app(host: Host, rules: Rules | None = None, faces: Sequence[Face] = F
     for face in faces:
         if (open_while_serving := face.add(app, host)) is not None:
             opened.append(open_while_serving)
-    rules = rules or Rules(MAX_BODY_BYTES)
-    roomy = dict(size for face in faces for size in face.max_bytes)
-    return Edge(app, replace(rules, roomy={**rules.roomy, **roomy}))
+    return app
 
 
 def _tell_faults(app: FastAPI) -> None:
@@ -97,8 +108,13 @@ def _tell_faults(app: FastAPI) -> None:
     async def missing(request: Request, error: HTTPException) -> Response:
         text = f"{readable(str(error.detail))}: {request.method} {readable(request.url.path)[:200]}"
         kind = "not_found" if error.status_code == 404 else "invalid_request_error"
-        failed = Failed(Problem(f"{text}. See GET /openapi.json.", kind))
-        return answer(error.status_code, failed, dict(error.headers or {}))
+        headers = dict(error.headers or {})
+        if error.status_code == 405:
+            # Starlette tells the methods of the first route of the path alone.
+            headers["allow"] = ", ".join(sorted(_methods_at(app, request)))
+        return answer(
+            error.status_code, Failed(Problem(f"{text}. See GET /openapi.json.", kind)), headers
+        )
 
     @app.exception_handler(RequestValidationError)
     async def wrong(_: Request, error: RequestValidationError) -> Response:
@@ -114,6 +130,16 @@ def _tell_faults(app: FastAPI) -> None:
     @app.exception_handler(Exception)
     async def unforeseen(_: Request, error: Exception) -> Response:
         return answer(*told(error))
+
+
+def _methods_at(app: FastAPI, request: Request) -> set[str]:
+    """The methods of all routes of a path."""
+    found: set[str] = set()
+    for method in ("GET", "POST", "PUT", "PATCH", "DELETE"):
+        scope = {**request.scope, "method": method, "path_params": {}}
+        if any(route.matches(scope)[0] is Match.FULL for route in app.routes):
+            found.add(method)
+    return found
 
 
 @contextmanager

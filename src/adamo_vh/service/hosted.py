@@ -68,7 +68,7 @@ class Hosted:
         self.touched = time.monotonic()
         """When somebody last asked something."""
         self._lock = threading.Lock()
-        self._last: tuple[str, Sent] = ("", Sent(Noted()))
+        self._last: tuple[Step | None, Sent] = (None, Sent(Noted()))
         """The last request that has an id, and its answer: it may be asked for again."""
 
     def welcome(self) -> Sent:
@@ -110,12 +110,12 @@ class Hosted:
         """
         with self._lock:
             self.touched = time.monotonic()
-            if step.request and step.request == self._last[0]:
+            if step.request and step == self._last[0]:
                 return self._last[1]
             frames: dict[str, Frame] = {}
             sent = Sent(self._answer(step, frames), frames)
             if step.request:
-                self._last = (step.request, sent)
+                self._last = (step, sent)
             return sent
 
     def _answer(self, step: Step, frames: dict[str, Frame]) -> Answer:
@@ -132,7 +132,8 @@ class Hosted:
             case Say():
                 body.say(encodable(step.text))
             case Finish():
-                body.finish(encodable(step.answer), _reason(step.reason), encodable(step.why))
+                reason = TerminationReason(step.reason) if step.reason else None
+                body.finish(encodable(step.answer), reason, encodable(step.why))
             case Load():
                 return Noted(body.ended, body.load(step.saved))
         return Noted(body.ended)
@@ -215,16 +216,6 @@ class Hosted:
         with self._lock:
             self.body.close()
         self.watch.close()
-
-
-def _reason(name: str | None) -> TerminationReason | None:
-    if name is None:
-        return None
-    try:
-        return TerminationReason(name)
-    except ValueError:
-        scored = ", ".join(reason for reason in TerminationReason if reason.is_scored)
-        raise ConfigError(f"There is no reason {name[:40]!r}. Reasons: {scored}.") from None
 
 
 @cache

@@ -18,7 +18,6 @@ from adamo_vh.serving.loopback import is_loopback
 from adamo_vh.serving.rate import Rate
 
 WITH_BODY = ("POST", "PUT", "PATCH")
-_METHODS = (*WITH_BODY, "GET", "HEAD", "DELETE", "OPTIONS")
 _MAX_TARGET_BYTES = 8_000
 _MAX_HEADERS = 100
 _MAX_HEADER_BYTES = 32_000
@@ -79,6 +78,11 @@ class Asked:
     header_count: int
     header_bytes: int
 
+    @property
+    def has_body(self) -> bool:
+        """Whether it says that it carries something."""
+        return "transfer-encoding" in self.headers or self.headers.get("content-length", "0") != "0"
+
     @classmethod
     def of(cls, scope: Mapping[str, Any]) -> Asked:
         """Read the scope of ASGI."""
@@ -124,9 +128,7 @@ def _foreign(asked: Asked, rules: Rules) -> Refusal | None:
 
 
 def _shapeless(asked: Asked, rules: Rules) -> Refusal | None:
-    if asked.method and asked.method not in _METHODS:
-        return Refusal(405, f"There is no method {asked.method[:20]!r}; use GET or POST.")
-    if asked.method in WITH_BODY:
+    if asked.method in WITH_BODY and asked.has_body:
         kind = asked.headers.get("content-type", "").partition(";")[0].strip().lower()
         if kind not in rules.content_types:
             offer = " or ".join(rules.content_types)

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 from tests.service.engines.test_line import TINY, world_of
-from tools.wire import FILE
+from tools.wire import FOLDER
 
 from adamo_vh.engine import LightChanged
 from adamo_vh.geometry import Vec3
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.service.engines.messages import METHODS, codec
 
-SCHEMA: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
+SCHEMA: dict[str, Any] = json.loads((FOLDER / "engine.json").read_text(encoding="utf-8"))
 
 
 def fits(value: Any, schema: Any, where: str = "") -> None:

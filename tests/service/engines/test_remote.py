@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.dialled import dialled
-from tools.wire import FILE, text
+from tools.wire import FOLDER, texts
 
 import adamo_vh
 from adamo_vh.abilities import Abilities
@@ -36,8 +36,9 @@ def remote(engine: BuiltinEngine) -> Iterator[RemoteWorld]:
 
 
 def test_the_published_schema_is_that_of_the_messages() -> None:
-    assert FILE.read_text(encoding="utf-8") == text(), "run: python tools/wire.py"
-    assert set(json.loads(text())["methods"]) >= {"scene", "capture", "rays", "walk", "restore"}
+    told = texts()["engine.json"]
+    assert (FOLDER / "engine.json").read_text(encoding="utf-8") == told, "run: python tools/wire.py"
+    assert set(json.loads(told)["methods"]) >= {"scene", "capture", "rays", "walk", "restore"}
 
 
 def test_what_is_seen_and_known_is_the_same(engine: BuiltinEngine, remote: RemoteWorld) -> None:
