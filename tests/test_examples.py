@@ -20,6 +20,7 @@ SAYS = {
     "07_own_engine.py": ["the body says:", "answered - The red block lies beside the yellow one."],
     "08_many_at_once.py": ["T1 1.0 after", "T2 1.0 after", "T4 1.0 after", "T8 1.0 after"],
     "09_reinforcement_learning.py": ["reward 0.5", "ended: answered, completion 1.0, strict 1.0"],
+    "10_mcp_client.py": ["Done: walked", "the end:  The episode has ended.", "score:    1.0"],
 }
 
 

@@ -198,10 +198,10 @@ Place = tuple[str, str, str, int]
 
 
 def _places(outcomes: Iterable[Outcome], of: Measure) -> dict[Place, list[Outcome]]:
-    """Scored episodes that have the figure, by scene, labeling, task and variation."""
+    """Episodes that count and have the figure, by scene, labeling, task and variation."""
     found: dict[Place, list[Outcome]] = {}
     for o in outcomes:
-        if o.is_scored and of(o) is not None:
+        if o.is_scored and o.is_ranked and of(o) is not None:
             found.setdefault((o.scene, o.labeling, o.task, o.variation), []).append(o)
     return found
 

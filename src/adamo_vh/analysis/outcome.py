@@ -16,13 +16,16 @@ from adamo_vh.benchmark.tasks import Task
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import EpisodeResult, Manifest
 from adamo_vh.errors import ConfigError, RecordError
-from adamo_vh.inference.model import ModelKind, Reply, Spent, Usage
+from adamo_vh.inference.model import UNSAFE, Isolation, ModelKind, Reply, Spent, Usage
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Ended, Trajectory
 from adamo_vh.record.turn import Wish
 
 _UNSURE = 0.5
 """A Finish with less confidence than this claims nothing."""
+
+
+_MARK = {"none": "not isolated", "unknown": "isolation unknown"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +108,18 @@ class Outcome:
     """The finer code of the failure."""
     state_hash: str = ""
     """Of the world at the end."""
+    isolation: Isolation = ""
+    """How far a program that decided was kept from all but its body; see `EpisodeResult`."""
 
     @property
     def is_scored(self) -> bool:
         """Whether it counts; a fault that is not the agent's never does."""
         return self.completion is not None
+
+    @property
+    def is_ranked(self) -> bool:
+        """Whether it may be compared with others: not if the player may have seen the answers."""
+        return self.isolation not in UNSAFE
 
     @property
     def is_complete(self) -> bool:
@@ -169,7 +179,8 @@ def outcome_of(
         scene=config.scene,
         variation=config.variation,
         labeling=manifest.labeling or str(config.labeling),
-        model=result.model,
+        # The mark goes where the name goes, and what is marked is never pooled with others.
+        model=result.model if result.is_ranked else f"{result.model} ({_MARK[result.isolation]})",
         model_kind=result.model_kind,
         profile=result.profile,
         task=config.task or config.instruction,
@@ -207,6 +218,7 @@ def outcome_of(
         diagnosis=diagnosis[0],
         diagnosis_code=diagnosis[1],
         state_hash=result.state_hash,
+        isolation=result.isolation,
     )
 
 

@@ -34,7 +34,7 @@ class RankRow:
 def ranks(outcomes: Iterable[Outcome]) -> tuple[RankRow, ...]:
     """For each setting and labeling, and for all models of a kind together."""
     groups: dict[tuple[Setting, str], list[Cell]] = {}
-    for cell in episodes_of_cells(outcomes):
+    for cell in episodes_of_cells(outcome for outcome in outcomes if outcome.is_ranked):
         own = setting_of(cell[0])
         pooled = Setting(ALL, own.model_kind, own.profile, own.axes)
         for setting in (own, pooled):

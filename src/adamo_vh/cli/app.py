@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from adamo_vh.cli.agent_options import AgentBind, AgentCmd, AgentEnv, Isolation
 from adamo_vh.cli.exits import listed
 from adamo_vh.cli.mcp_app import mcp_app
 from adamo_vh.cli.study_app import study_app
@@ -112,6 +113,11 @@ def run(
     resolution: Annotated[str, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = "1920x1080",
     text: Annotated[str, typer.Option(help="Symbolic text: full or paper.")] = "full",
     max_steps: Annotated[int, typer.Option(help="Step cap.")] = 60,
+    max_seconds: Annotated[float, typer.Option(help="Time cap of thinking and acting.")] = 600.0,
+    agent_cmd: AgentCmd = None,
+    agent_env: AgentEnv = None,
+    agent_bind: AgentBind = None,
+    isolation: Isolation = "auto",
     budget: Annotated[
         list[str] | None,
         typer.Option(
@@ -137,38 +143,51 @@ def run(
 ) -> None:
     """Run one episode: an instruction in plain words, or a task of the benchmark."""
     from adamo_vh.cli.episode import resume_and_show, run_and_show
-    from adamo_vh.cli.settings import pairs, read_budget, refuse_others
+    from adamo_vh.cli.settings import pairs, read_budget, refuse_if_given, refuse_others
+    from adamo_vh.record.termination import Limits
 
     caps = read_budget(pairs(budget, "budget"))
     if resume is not None:
         refuse_others(context, "resume", "budget", "sign", "json", "engine", "engine_port")
         resume_and_show(resume, caps, sign, (engine, engine_port), as_json=json)
         return
+    settings: dict[str, Any] = {
+        "task": task,
+        "scene": scene,
+        "figure": figure,
+        "labeling": labeling,
+        "profile": profile,
+        "switches": pairs(switch, "switch"),
+        "added_tools": tool or (),
+        "budget": caps,
+        "seed": seed,
+        "variation": variation,
+        "k": k,
+        "grid": grid,
+        "resolution": resolution,
+        "text_form": text,
+        "limits": Limits(max_steps=max_steps, max_seconds=max_seconds),
+    }
+    if agent_cmd is not None:
+        from adamo_vh.cli.agent import play_and_show
+
+        why = "does not go with --agent-cmd; leave it out."
+        refuse_if_given(context, why, "model", "tool_calls", "record", "video", "engine")
+        settings |= {"isolation": isolation, "passed": agent_env or [], "shown": agent_bind or []}
+        play_and_show(instruction, agent_cmd, out=out, sign=sign, as_json=json, **settings)
+        return
+    refuse_if_given(context, "is for --agent-cmd; add it.", "agent_env", "agent_bind", "isolation")
     run_and_show(
         instruction,
         as_json=json,
         out=out,
         where=(engine, engine_port),
-        task=task,
-        scene=scene,
-        figure=figure,
-        labeling=labeling,
         model=model,
         tool_calls=tool_calls,
-        profile=profile,
-        switches=pairs(switch, "switch"),
-        added_tools=tool or (),
-        budget=caps,
         record=record,
-        seed=seed,
-        variation=variation,
-        k=k,
-        grid=grid,
-        resolution=resolution,
-        text_form=text,
-        max_steps=max_steps,
         video=video,
         sign=sign,
+        **settings,
     )
 
 

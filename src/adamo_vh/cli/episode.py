@@ -38,7 +38,7 @@ def run_and_show(
     as_json: bool,
     out: Path | None,
     record: bool,
-    max_steps: int,
+    limits: Limits,
     video: Path | None,
     sign: Path | None,
     where: tuple[str, int],
@@ -49,7 +49,6 @@ def run_and_show(
     from adamo_vh.session.session import Session
 
     signer = Signer(sign) if sign else None
-    limits = Limits(max_steps=max_steps)
     if video is not None:
         # Drawing the film takes minutes that are not the agent's.
         limits = replace(limits, max_seconds=1e9)
@@ -73,7 +72,7 @@ def run_and_show(
         result = session.result()
     if signer is not None:
         sign_run(folder, signer)
-    _show(result, folder, as_json=as_json)
+    show_result(result, folder, as_json=as_json)
 
 
 def _announce(ahead: Forecast, budget: Budget) -> None:
@@ -140,10 +139,11 @@ def resume_and_show(
         result = resume_episode(folder, budget=budget or None, engine=engine, observers=progress)
     if signer is not None:
         sign_run(folder, signer)
-    _show(result, folder, as_json=as_json)
+    show_result(result, folder, as_json=as_json)
 
 
-def _show(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
+def show_result(result: EpisodeResult, folder: Path, *, as_json: bool) -> None:
+    """Print what came of an episode; the exit code says whether it counts."""
     if as_json:
         put_json(result_json(result))
     else:
@@ -218,7 +218,7 @@ def result_json(result: EpisodeResult) -> dict[str, Any]:
     keys = (
         "task instruction scene labeling profile model model_kind seed termination why answer "
         "steps model_calls calls missing_notes unreadable requests usage cost_usd rungs model_s "
-        "world_s walked_m direct_m run state_hash"
+        "world_s walked_m direct_m run state_hash isolation"
     )
     world = [
         {
@@ -282,6 +282,11 @@ def _print_result(result: EpisodeResult, folder: Path) -> None:
     line("model", _accounts(result))
     for warning in result.warnings:
         line("warning", warning)
+    if result.isolation:
+        told = (
+            "" if result.is_ranked else ": the player may have seen more than its body; not ranked"
+        )
+        line("isolation", f"{result.isolation}{told}")
     line("time", f"model {result.model_s:.1f} s, world {result.world_s:.1f} s")
     line("walked", f"{result.walked_m:.1f} m, {result.direct_m:.1f} m in straight lines")
     line("page", str(folder / "episode.html"))

@@ -75,6 +75,23 @@ def refuse_others(context: typer.Context, *allowed: str) -> None:
         )
 
 
+def refuse_if_given(context: typer.Context, why: str, *unfit: str) -> None:
+    """Make sure that some parameters of a command were not given.
+
+    Args:
+        context: The command.
+        why: What is wrong with it, and the fix; follows the name of the option.
+        unfit: The parameters.
+
+    Raises:
+        ConfigError: One was; names it.
+    """
+    for parameter in context.command.params:
+        source = context.get_parameter_source(str(parameter.name))
+        if parameter.name in unfit and source is not None and source.name != "DEFAULT":
+            raise ConfigError(f"{parameter.opts[0]} {why}")
+
+
 def values_of(given: Sequence[str] | None) -> dict[str, Any]:
     """Read settings that are written NAME=VALUE, as in a study file but for the quotes of texts.
 

@@ -20,7 +20,7 @@ from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import FileError, RecordError
 from adamo_vh.files import read_text, write_whole
 from adamo_vh.geometry import Vec3
-from adamo_vh.inference.model import ModelKind, Reply, Spent, Usage
+from adamo_vh.inference.model import UNSAFE, Isolation, ModelKind, Reply, Spent, Usage
 from adamo_vh.inference.remote.capabilities import Capabilities
 from adamo_vh.perception import Labeling
 from adamo_vh.record.digest import Seal
@@ -54,6 +54,13 @@ class Manifest:
     labeling: str = ""
     """Class of the labeling, if it was handed in; `config.labeling` plays no part then."""
     format: int = FORMAT
+    isolation: Isolation = ""
+    """How far a program that decides is kept from all but its body; see `ModelInfo.isolation`."""
+
+    @property
+    def is_ranked(self) -> bool:
+        """Whether it may be compared with others; see `EpisodeResult.is_ranked`."""
+        return self.isolation not in UNSAFE
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +125,8 @@ class EpisodeResult:
     """What people should know of the replies; see `Reply.warning`."""
     own_labeling: str = ""
     """Class of the labeling, if it was handed in; `labeling` plays no part then."""
+    isolation: Isolation = ""
+    """How far a program that decided was kept from all but its body; empty if a model was asked."""
     seal: Seal | None = None
     """Digests of the files that this rests on, once it is written; older results have none."""
 
@@ -145,6 +154,11 @@ class EpisodeResult:
     def violations(self) -> tuple[str, ...]:
         """What speaks against a strict success; none without a score."""
         return () if self.score is None else self.score.violations
+
+    @property
+    def is_ranked(self) -> bool:
+        """Whether it may be compared with others: not if the player may have seen the answers."""
+        return self.isolation not in UNSAFE
 
     @property
     def tokens(self) -> int:
@@ -223,6 +237,7 @@ def summarise(
         cost_usd=total_cost(answers),
         warnings=_warnings(replies),
         own_labeling=manifest.labeling,
+        isolation=manifest.isolation,
         rungs=tuple(sorted({str(reply.rung) for reply in replies if reply.rung is not None})),
         model_s=sum(reply.seconds for reply in replies),
         world_s=sum(act.world_s for act in trajectory.acts),

@@ -5,13 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.messages import AIMessage, Message
 
 if TYPE_CHECKING:
     from adamo_vh.inference.remote.capabilities import Capabilities
+
+
+Isolation = Literal["", "bwrap", "none", "unknown"]
+"""How far a player is kept from all but its body: in a box of bubblewrap, not at all, or nobody
+knows."""
+UNSAFE: tuple[Isolation, ...] = ("none", "unknown")
+"""The player may have seen more than its body, the answers even: never compared with others."""
 
 
 class ModelKind(StrEnum):
@@ -192,6 +199,9 @@ class ModelInfo:
     """How it is asked for its calls; None for models without a wire."""
     capabilities: Capabilities | None = None
     """What a probe found out about it; None if it was not probed or has no wire."""
+    isolation: Isolation = ""
+    """How far a program outside is kept from all but its body; empty for a model that is asked from
+    here, and sees only what it is sent."""
     close: Callable[[], None] = field(default=_nothing_to_close, compare=False)
     """Closes its connections."""
 

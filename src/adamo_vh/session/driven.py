@@ -24,6 +24,7 @@ from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import EpisodeResult, Manifest, judged
 from adamo_vh.errors import ConfigError, EpisodeOverError, InvalidActionError
 from adamo_vh.inference.model import ModelInfo, ModelKind, Reply
+from adamo_vh.inference.players.outside import UNKNOWN
 from adamo_vh.observation import Observation
 from adamo_vh.perception.writer import Wording, whole_state
 from adamo_vh.record.termination import Stop, TerminationReason
@@ -127,7 +128,7 @@ class DrivenBody:
                 config = as_said(config, world)
             check_task(config, world)
             config = replace(config, model=player)
-            who = ModelInfo(player, ModelKind.OUTSIDE)
+            who = ModelInfo(player, ModelKind.OUTSIDE, isolation=UNKNOWN)
             manifest = describe(config, who, world, {**parts, "engine": engine})
             folder, writer = None if out is None else Path(out), None
             if folder is not None:

@@ -30,10 +30,11 @@ from adamo_vh.inference.messages import (
     SystemMessage,
     pictures_of,
 )
-from adamo_vh.inference.players.outside import Asked, OutsideModel, outside_name
+from adamo_vh.inference.model import Isolation
+from adamo_vh.inference.players.outside import UNKNOWN, Asked, OutsideModel, outside_name
 from adamo_vh.observation import Frame
 from adamo_vh.perception import TextForm
-from adamo_vh.record.trajectory import Ended, Event
+from adamo_vh.record.trajectory import Ended, Event, Observer
 from adamo_vh.session.runs import resume_episode
 from adamo_vh.session.session import Session, read_unfinished
 
@@ -96,6 +97,8 @@ class OutsideEpisode:
         *,
         client: str = "",
         engine: World | None = None,
+        isolation: Isolation = UNKNOWN,
+        observers: Sequence[Observer] = (),
         done: Callable[[OutsideEpisode], None] | None = None,
     ) -> Self:
         """Begin an episode.
@@ -106,6 +109,8 @@ class OutsideEpisode:
             out: A new run folder; none without.
             client: What the mind calls itself.
             engine: In place of the scene's; is reset, and not closed.
+            isolation: How far the mind is kept from all but its body; see `ModelInfo`.
+            observers: Are told of every event.
             done: Is called when all is over, in the thread of the episode.
 
         Raises:
@@ -113,14 +118,14 @@ class OutsideEpisode:
             RecordError: `out` already holds a run, or somebody else writes it.
         """
         config = replace(config, profile=replace(config.profile, plan=1))
-        model, kept = OutsideModel(outside_name(client), _within_s(config)), _Kept()
+        model, kept = OutsideModel(outside_name(client), _within_s(config), 0, isolation), _Kept()
         session = Session.begin(
             config,
             out,
             engine=engine,
             model=model,
             memory=kept.make,
-            observers=(_TellsEnd(model),),
+            observers=(*observers, _TellsEnd(model)),
         )
 
         def play() -> EpisodeResult:

@@ -65,6 +65,7 @@ def describe(config: EpisodeConfig, who: ModelInfo, world: World, parts: Parts) 
         engine=own_engine(world) if parts.get("engine") else "",
         engine_lacks=abilities(world).lacking(),
         labeling="" if tagger is None else type(tagger).__name__,
+        isolation=who.isolation,
     )
 
 

@@ -17,11 +17,12 @@ from adamo_vh.action import ToolSchema
 from adamo_vh.errors import ModelError
 from adamo_vh.inference.arguments import clean_arguments, dump_arguments
 from adamo_vh.inference.messages import AIMessage, Message, SystemMessage, ToolCall
-from adamo_vh.inference.model import ModelInfo, ModelKind, Reply, Sampling, Spent
+from adamo_vh.inference.model import Isolation, ModelInfo, ModelKind, Reply, Sampling, Spent
 from adamo_vh.readable import readable
 
 OUTSIDE = "outside"
 """First word of the name of every such model."""
+UNKNOWN: Isolation = "unknown"
 _LONGEST_NAME = 60
 _WAIT_S = 3600.0
 """A thread waits so long at once; longer waits are made of several."""
@@ -58,15 +59,18 @@ class OutsideModel:
     which lets the limits of the episode end it.
     """
 
-    def __init__(self, name: str, within_s: float, answered: int = 0) -> None:
+    def __init__(
+        self, name: str, within_s: float, answered: int = 0, isolation: Isolation = UNKNOWN
+    ) -> None:
         """Wait for nobody yet.
 
         Args:
             name: As of `outside_name`.
             within_s: Seconds that all replies may take together.
             answered: Replies that were given before an interruption.
+            isolation: How far it is kept from all but its body; see `ModelInfo`.
         """
-        self._name = name
+        self._name, self._isolation = name, isolation
         self._left_s = within_s
         self._answered = answered
         self._change = threading.Condition()
@@ -81,7 +85,7 @@ class OutsideModel:
     @property
     def info(self) -> ModelInfo:
         """From outside."""
-        return ModelInfo(self._name, ModelKind.OUTSIDE)
+        return ModelInfo(self._name, ModelKind.OUTSIDE, isolation=self._isolation)
 
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling

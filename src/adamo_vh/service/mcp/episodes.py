@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import secrets
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from adamo_vh.episode.result import read_manifest
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import ModelKind
 from adamo_vh.record.run_folder import FRAMES, MANIFEST, RESULT, SCENE, reserve
+from adamo_vh.record.trajectory import Observer
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.session.bodies import create_engine
 from adamo_vh.session.lending import Lender, LentWorld
@@ -30,6 +31,8 @@ _CHECK_S = 5.0
 
 Watch = Callable[[str], None]
 """Is told what happens, in lines for whoever runs the server."""
+MakeEngine = Callable[[str, str, int], World]
+"""Makes the engine of a scene, a figure and a variation."""
 
 
 class Episodes:
@@ -39,7 +42,8 @@ class Episodes:
         self,
         offer: Offer,
         watch: Watch = lambda line: None,
-        make_engine: Callable[[str, str, int], World] = create_engine,
+        make_engine: MakeEngine = create_engine,
+        observers: Sequence[Observer] = (),
     ) -> None:
         """Play nothing yet.
 
@@ -47,10 +51,12 @@ class Episodes:
             offer: What is played.
             watch: Is told what happens; never the players.
             make_engine: Makes the engine of a scene, a figure and a variation.
+            observers: Are told of every event of the episodes that begin here.
         """
         self.offer = offer
         self._watch = watch
         self._make_engine = make_engine
+        self._observers = observers
         self._lock = threading.RLock()
         self._live: dict[str, OutsideEpisode] = {}
         self._engines: dict[tuple[str, str, int], Lender] = {}
@@ -174,7 +180,13 @@ class Episodes:
             stack.callback(_remove_empty, folder)
             lent = self._lender(config).lend()
             self._live[folder.name] = episode = OutsideEpisode.begin(
-                config, folder, client=client, engine=lent, done=self._done(folder, lent)
+                config,
+                folder,
+                client=client,
+                engine=lent,
+                isolation=self.offer.isolation,
+                observers=self._observers,
+                done=self._done(folder, lent),
             )
             stack.pop_all()
         self._watch(f"{folder.name}: {config.task or 'free'} in {config.scene}, run in {folder}")

@@ -12,6 +12,8 @@ from adamo_vh.benchmark.tasks import builtin_tasks
 from adamo_vh.cognition.turns import offered
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import ConfigError
+from adamo_vh.inference.model import Isolation
+from adamo_vh.inference.players.outside import UNKNOWN
 from adamo_vh.perception import Labeling
 from adamo_vh.record.turn import FINISH, NOTE
 from adamo_vh.session.bodies import tools_for
@@ -42,6 +44,10 @@ class Offer:
     """Episodes at once."""
     idle_s: float = 1800.0
     """An episode of which nothing is heard for so long is closed; it can be gone on with."""
+    player: str = ""
+    """Who plays, if that is known; else clients say it themselves."""
+    isolation: Isolation = UNKNOWN
+    """How far the players are kept from all but their bodies; see `ModelInfo`."""
 
     def __post_init__(self) -> None:
         """Refuse what no episode can be played with."""

@@ -88,7 +88,7 @@ class _Face:
         self, context: Context, params: types.CallToolRequestParams
     ) -> types.CallToolResult:
         """Carry a call out. What is wrong with it is told in the result."""
-        client, given = _client(context), dict(params.arguments or {})
+        client, given = self._client(context), dict(params.arguments or {})
         try:
             blocks = await self._in_thread(lambda: self._called(params.name, given, client))
         except _ToldError as failed:
@@ -113,7 +113,7 @@ class _Face:
         if params.name != INSTRUCTIONS:
             raise MCPError(types.INVALID_PARAMS, f"There is no such prompt; use {INSTRUCTIONS}.")
         name = (params.arguments or {}).get(EPISODE, self._episodes.fixed)
-        told = await self._asked(lambda: self._instructions(name, _client(context)))
+        told = await self._asked(lambda: self._instructions(name, self._client(context)))
         return types.GetPromptResult(
             messages=[types.PromptMessage(role="user", content=text(told))]
         )
@@ -154,7 +154,7 @@ class _Face:
             blob = base64.b64encode(data).decode()
             contents = types.BlobResourceContents(uri=uri, mime_type=kind, blob=blob)
         else:
-            told = await self._asked(lambda: self._instructions(name, _client(context)))
+            told = await self._asked(lambda: self._instructions(name, self._client(context)))
             contents = types.TextResourceContents(uri=uri, mime_type="text/markdown", text=told)
         return types.ReadResourceResult(contents=[contents])
 
@@ -205,6 +205,11 @@ class _Face:
             note = _text_of(given, NOTE, needed=False)
         return content(name, episode.call(tool, given, note, client))
 
+    def _client(self, context: Context) -> str:
+        """Who plays: what the client calls itself, unless it is known; empty if neither."""
+        params = context.session.client_params
+        return self._episodes.offer.player or ("" if params is None else params.client_info.name)
+
     def _instructions(self, name: str, client: str) -> str:
         episode = self._episodes.find(name, client)
         return ENDED if episode is None else _told(name, episode)
@@ -228,9 +233,3 @@ def _text_of(given: dict[str, Any], name: str, *, needed: bool = True) -> str:
     if len(value) > LONGEST:
         raise _ToldError(f"{name} has {len(value)} characters; use at most {LONGEST}.")
     return value
-
-
-def _client(context: Context) -> str:
-    """What the client calls itself; empty if it does not say."""
-    params = context.session.client_params
-    return "" if params is None else params.client_info.name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import socket
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from typing import Any
@@ -73,11 +74,23 @@ def serve_http(
     Raises:
         ConfigError: The port cannot be had, or others could reach the host.
     """
-    with listen(host, port) as opened:
-        app = Edge(create_app(server), Rules(MAX_BODY_BYTES, token=token))
-        with running(app, opened, "adamo-vh-mcp", has_lifespan=True):
-            shown = f"[{host}]" if ":" in host else host
-            yield f"http://{shown}:{opened.getsockname()[1]}{PATH}"
+    with listen(host, port) as opened, serve_socket(server, opened, token=token):
+        shown = f"[{host}]" if ":" in host else host
+        yield f"http://{shown}:{opened.getsockname()[1]}{PATH}"
+
+
+@contextmanager
+def serve_socket(server: Server[Any], opened: socket.socket, *, token: str = "") -> Iterator[None]:
+    """Serve on a socket that listens already, while the block runs; it is closed at the end.
+
+    Args:
+        server: As of `create_server`.
+        opened: Of this machine alone.
+        token: What each request must bring as its bearer token; empty for none.
+    """
+    app = Edge(create_app(server), Rules(MAX_BODY_BYTES, token=token))
+    with opened, running(app, opened, "adamo-vh-mcp", has_lifespan=True):
+        yield
 
 
 def serve_stdio(server: Server[Any]) -> None:
