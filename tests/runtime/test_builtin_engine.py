@@ -374,3 +374,10 @@ def test_drawing_leaves_the_model_as_it_is(engine: BuiltinEngine) -> None:
     vis = engine.world.model.vis
     assert (vis.global_.offwidth, vis.global_.offheight) == sizes
     assert min(vis.quality.offsamples, vis.quality.shadowsize) > 0
+
+
+def test_no_ray_slips_through_between_two_triangles(engine: BuiltinEngine) -> None:
+    # The floor's own edge runs here.
+    down = np.array([[0.0, 0.0, -1.0], [0.1, 0.0, -1.0]])
+    hits = engine.body.rays(Vec3(-1.2, -1.0, 1.0), down / np.linalg.norm(down, axis=1)[:, None])
+    assert [None if hit is None else round(hit.z, 6) for hit in hits] == [0.0, 0.0]

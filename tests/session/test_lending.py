@@ -14,7 +14,6 @@ from tests.records import assert_the_same_record
 
 import adamo_vh
 from adamo_vh.action import ToolSchema
-from adamo_vh.action_server.engine_check import engine_faults
 from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.engine import LightChanged, ObjectMoved, ObjectTaken, World, acting_body
 from adamo_vh.episode.config import EpisodeConfig
@@ -29,6 +28,7 @@ from adamo_vh.inference.registry import create_model
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.service.conformance import engine_faults
 from adamo_vh.session.lending import Lender, LentWorld
 from adamo_vh.session.session import Session
 

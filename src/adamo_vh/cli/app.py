@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from adamo_vh.cli.agent_options import AgentBind, AgentCmd, AgentEnv, Isolation
+from adamo_vh.cli.engines_app import engines_app
 from adamo_vh.cli.exits import listed
 from adamo_vh.cli.mcp_app import mcp_app
 from adamo_vh.cli.study_app import study_app
@@ -29,6 +30,7 @@ cache_app = typer.Typer(help="What is kept to be faster.", invoke_without_comman
 app.add_typer(cache_app, name="cache")
 app.add_typer(study_app)
 app.add_typer(mcp_app)
+app.add_typer(engines_app)
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]

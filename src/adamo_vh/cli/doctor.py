@@ -127,9 +127,10 @@ def _graphics() -> str:
 
 
 def _test_frame() -> str:
+    from adamo_vh.service.conformance import engine_faults
     from adamo_vh.session.builtin import check_machine
 
-    return check_machine()
+    return check_machine(lambda world: engine_faults(world, ("state", "capture", "pick", "again")))
 
 
 def _keys() -> Finding:

@@ -26,6 +26,8 @@ _STILL_M_S = 0.004
 _STILL_RAD_S = 0.08
 _CREEP_M = 0.001
 _CREEP_QUATERNION = 0.004
+_BESIDE_M = np.array([1.3e-5, 0.7e-5, 0.0])
+"""How far beside a ray another one goes that slipped through."""
 _UPWARD = 0.5
 """Least vertical part of a contact normal that carries."""
 
@@ -165,13 +167,25 @@ def raycast(
         directions: (N, 3) unit vectors.
         ignored: Object id that rays pass through.
     """
+    start = origin.array()
+    distance = _distances(world, start, directions, ignored)
+    if (missed := distance < 0).any():
+        # Where a ray meets the very edge between two triangles it slips through both.
+        distance[missed] = _distances(world, start + _BESIDE_M, directions[missed], ignored)
+    return [
+        Vec3.of(start + d * direction) if d >= 0 else None
+        for d, direction in zip(distance, directions, strict=True)
+    ]
+
+
+def _distances(world: CompiledWorld, start: Array, directions: Array, ignored: int | None) -> Array:
+    """(N,) how far rays go; negative where nothing was hit."""
     import mujoco
 
     count = len(directions)
     hit = np.full(count, -1, np.int32)
     distance = np.zeros(count)
     skip = world.objects[ignored].body if ignored is not None else -1
-    start = origin.array()
     mujoco.mj_multiRay(
         world.model,
         world.data,
@@ -186,10 +200,7 @@ def raycast(
         count,
         mujoco.mjMAXVAL,
     )
-    return [
-        Vec3.of(start + d * direction) if geom >= 0 else None
-        for geom, d, direction in zip(hit, distance, directions, strict=True)
-    ]
+    return np.where(hit >= 0, distance, -1.0)
 
 
 def line_is_free(world: CompiledWorld, start: Vec3, end: Vec3) -> bool:

@@ -7,12 +7,11 @@ here, so that nothing but the session knows which engine is built in.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from adamo_vh.action_server.engine_check import engine_faults
 from adamo_vh.errors import RenderingError, SceneError
 from adamo_vh.files import write_whole
 from adamo_vh.plugins import ENGINES, plugin_names
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from adamo_vh.engine import World
     from adamo_vh.runtime.builtin import BuiltinEngine
     from adamo_vh.runtime.inspection.finding import SceneFinding
     from adamo_vh.runtime.scenes import Scene
@@ -196,8 +196,11 @@ def graphics_name() -> str:
     return backend_name()
 
 
-def check_machine() -> str:
+def check_machine(faults_of: Callable[[World], Sequence[str]]) -> str:
     """Let somebody live in scene s1 for a moment; what was seen, in words.
+
+    Args:
+        faults_of: What an engine does otherwise than the contract says.
 
     Raises:
         RenderingError: The engine does not keep its contract on this machine.
@@ -206,7 +209,7 @@ def check_machine() -> str:
 
     engine = BuiltinEngine("s1")
     try:
-        if faults := engine_faults(engine):
+        if faults := faults_of(engine):
             raise RenderingError(f"Scene s1 does not work here: {faults[0]}")
         engine.stage.forget()
         started = time.perf_counter()
