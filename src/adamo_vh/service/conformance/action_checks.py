@@ -68,7 +68,11 @@ def _look_limits(probe: Probe) -> Iterator[str]:
 
 
 def _walk(probe: Probe) -> Iterator[str]:
-    place = probe.place()
+    try:
+        place = probe.place()
+    except NotTriedError as error:
+        yield str(error)
+        return
     before = probe.state()
     report = probe.body.walk(place)
     after = probe.state()
@@ -131,7 +135,11 @@ def _walk_into(probe: Probe) -> Iterator[str]:
 
 
 def _pick(probe: Probe) -> Iterator[str]:
-    number = probe.pickable()
+    try:
+        number = probe.pickable()
+    except NotTriedError as error:
+        yield str(error)
+        return
     before = probe.state()
     report = probe.body.pick(number)
     after = probe.state()
