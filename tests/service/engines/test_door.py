@@ -201,3 +201,33 @@ def test_a_closed_world_gives_its_engine_to_the_next(engine: BuiltinEngine) -> N
             world.close()
         world.line.hang_up("over")
         thread.join(10.0)
+
+
+def test_the_token_of_the_environment_is_asked_for(
+    engine: BuiltinEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ADAMO_VH_TOKEN", "s3cret")
+    told: list[str] = []
+    port = free_port()
+
+    def run(token: str) -> None:
+        soon(lambda: told)
+        with suppress(ConfigError):
+            dial(f"ws://127.0.0.1:{port}/engine", lambda *_: Passing(engine), "Mine", token=token)
+
+    for token in ("wrong", "s3cret"):
+        threading.Thread(target=run, args=(token,), daemon=True).start()
+    with dialled_in("s1", port=port, wait_s=20.0, tell=told.append) as world:
+        assert world.scene.name == "s1"
+    assert told[0].endswith("/engine (with the token)")
+
+
+def test_an_engine_that_dials_in_is_looked_over(engine: BuiltinEngine) -> None:
+    port = free_port()
+    dialling(port, engine)
+    target = f"ws://127.0.0.1:{port}/engine"
+    done = CliRunner().invoke(app, ["conformance", target, "--only", "drop-empty", "--json"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert (found["engine"], found["conforms"]) == ("dialled in: Mine 3", True)
+    assert [item["verdict"] for item in found["checks"]] == ["passed"]
