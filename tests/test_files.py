@@ -20,6 +20,7 @@ from adamo_vh.files import (
     CACHE_DIR,
     append_line,
     cache_folder,
+    parse_json,
     parse_toml,
     read_json,
     read_text,
@@ -232,3 +233,18 @@ def _umask() -> int:
     now = os.umask(0)
     os.umask(now)
     return now
+
+
+def test_json_from_anywhere_is_read_as_strictly_as_a_file() -> None:
+    assert parse_json('{"a": [1, 2.5, null, true, "\\u00e9"]}') == {"a": [1, 2.5, None, True, "é"]}
+    assert parse_json('"\\ud800"') == "?"
+    for text, told in (
+        ("{", "line 1"),
+        ("NaN", "no JSON number"),
+        ("1e999", "beyond all numbers"),
+        ('{"a": 1, "a": 2}', "stands twice"),
+        ("[" * 70 + "]" * 70, "open fewer"),
+        ("1" * 101, "a number of 101 digits"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            parse_json(text)
