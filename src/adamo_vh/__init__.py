@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from adamo_vh.action_server import Tool as Tool
     from adamo_vh.action_server import ToolContext as ToolContext
     from adamo_vh.action_server.frame_cache import FrameCache as FrameCache
+    from adamo_vh.action_server.remote import RemoteBody as RemoteBody
+    from adamo_vh.action_server.remote import connect as connect
     from adamo_vh.benchmark.tasks import Task as Task
     from adamo_vh.cognition.budget import Budget as Budget
     from adamo_vh.cognition.guards import Guard as Guard
@@ -47,6 +49,7 @@ _HOMES = {
     "action": "Feedback",
     "action_server": "PAPER_TOOLS Tool ToolContext",
     "action_server.frame_cache": "FrameCache",
+    "action_server.remote": "RemoteBody connect",
     "benchmark.tasks": "Task",
     "cognition.budget": "Budget",
     "cognition.guards": "Guard",

@@ -11,6 +11,7 @@ from adamo_vh.cli.agent_options import AgentBind, AgentCmd, AgentEnv, Isolation
 from adamo_vh.cli.engines_app import engines_app
 from adamo_vh.cli.exits import listed
 from adamo_vh.cli.mcp_app import mcp_app
+from adamo_vh.cli.serve_app import serve_app
 from adamo_vh.cli.study_app import study_app
 from adamo_vh.cli.tasks_app import tasks_app
 from adamo_vh.inference.uris import HELP
@@ -31,6 +32,7 @@ app.add_typer(cache_app, name="cache")
 app.add_typer(study_app)
 app.add_typer(mcp_app)
 app.add_typer(engines_app)
+app.add_typer(serve_app)
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]

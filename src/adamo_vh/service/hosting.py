@@ -30,6 +30,8 @@ from adamo_vh.session.driven import DrivenBody
 
 _SWEEP_S = 5.0
 _REMEMBERED = 1_000
+_UNGUESSABLE = 32
+"""Letters of an id that nobody guesses, who would get into the session of another with it."""
 
 
 class NoSessionError(AdamoError):
@@ -70,6 +72,8 @@ class Host:
         self._sessions: dict[str, Hosted] = {}
         self._folders: OrderedDict[str, Path] = OrderedDict()
         """Run folders of the sessions that were closed, for a judge."""
+        self._begun_for: OrderedDict[str, str] = OrderedDict()
+        """Sessions by the request that began them: it may come again, if its answer was lost."""
         self._beginning = 0
         self._lock = threading.Lock()
         self._closing = threading.Event()
@@ -85,6 +89,8 @@ class Host:
         """
         config = self._config(asked)
         with self._lock:
+            if known := self._sessions.get(self._begun_for.get(asked.request, "")):
+                return known
             if self._closing.is_set():
                 raise BusyError("The server is ending.")
             if self._played() + self._beginning >= self.terms.most_sessions:
@@ -96,10 +102,25 @@ class Host:
             hosted = self._begun(config, readable(asked.player).strip() or "outside")
             with self._lock:
                 self._sessions[hosted.id] = hosted
+                if len(asked.request) >= _UNGUESSABLE:
+                    self._begun_for[asked.request] = hosted.id
+                while len(self._begun_for) > _REMEMBERED:
+                    self._begun_for.popitem(last=False)
         finally:
             with self._lock:
                 self._beginning -= 1
         return hosted
+
+    def prepare(self, asked: Create) -> None:
+        """Open the engine of a session before anybody begins one.
+
+        Raises:
+            ConfigError: A setting is wrong.
+            SceneError: The scene is wrong.
+        """
+        config = self._config(asked)
+        self._engines.take(config)
+        self._engines.give_back(config)
 
     def _begun(self, config: EpisodeConfig, player: str) -> Hosted:
         name = secrets.token_urlsafe(12)
@@ -203,10 +224,13 @@ class Host:
     def _sweep(self) -> None:
         """End what ran out of time, and close what nobody uses."""
         while not self._closing.wait(min(_SWEEP_S, self.terms.idle_s / 4)):
-            for hosted in self.sessions():
-                _quietly(hosted.expire)
-            for name in self._stale():
-                _quietly(partial(self.close, name))
+            self._sweep_once()
+
+    def _sweep_once(self) -> None:
+        for hosted in self.sessions():
+            _quietly(hosted.expire)
+        for name in self._stale():
+            _quietly(partial(self.close, name))
 
     def _stale(self) -> list[str]:
         """Sessions that nobody asks anything, and the oldest of too many that have ended."""

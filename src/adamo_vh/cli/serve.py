@@ -1,0 +1,97 @@
+"""`adamo-vh serve`: the body for programs from outside, until the process is told to stop."""
+
+from __future__ import annotations
+
+import secrets
+import signal
+import threading
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from adamo_vh.cli.episode import RUNS
+from adamo_vh.cli.terminal import say
+from adamo_vh.errors import ConfigError
+from adamo_vh.serving.admission import Rules
+from adamo_vh.serving.loopback import is_loopback
+
+NEW = "new"
+"""In place of a token: one is made up, and told once."""
+_SHORTEST = 12
+"""Letters of a token that keeps others out."""
+
+
+def serve(
+    address: str,
+    port: int,
+    out: Path | None,
+    *,
+    token: str,
+    judge: str,
+    hosts: list[str],
+    **terms: Any,
+) -> None:
+    """Serve the body until the process is told to stop; every record is whole then.
+
+    Args:
+        address: Where to listen.
+        port: The port; 0 for a free one.
+        out: Where run folders go.
+        token: What players bring; empty for none.
+        judge: What a judge brings; `NEW` to make one up, empty for no judge.
+        hosts: Further names under which this machine may be asked.
+        **terms: What is offered; see `adamo_vh.service.hosting.Terms`.
+
+    Raises:
+        ConfigError: A setting is wrong, the port is taken, or the extra `serve` is missing.
+    """
+    try:
+        from adamo_vh.service.app import MAX_BODY_BYTES, serving
+    except ImportError as error:
+        raise ConfigError(
+            f"The service needs an extra package ({error.name}): pip install 'adamo-vh[serve]'."
+        ) from None
+    from adamo_vh.action_server.wire import Create
+    from adamo_vh.service.hosting import Host, Terms
+
+    player_key, judge_key = _key(token, "--token"), _key(judge, "--judge")
+    own = () if is_loopback(address) or address in ("0.0.0.0", "::") else (address,)
+    rules = Rules(MAX_BODY_BYTES, token=player_key, judge_token=judge_key, hosts=(*own, *hosts))
+    folder = out or RUNS / f"served-{datetime.now(UTC):%Y%m%d-%H%M%S}"
+    stop = threading.Event()
+    # Set anew because a shell may have told its background jobs to ignore Ctrl+C.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    host = Host(folder, Terms(**terms))
+    try:
+        with serving(host, address=address, port=port, rules=rules) as url:
+            # A wrong setting is told now, and the first player does not wait for the engine.
+            host.prepare(Create(instruction="Look around."))
+            say(f"serving {url}/v1")
+            if token == NEW:
+                say(f"token   {player_key}")
+            if judge == NEW:
+                say(f"judge   {judge_key}")
+            say(f"records {folder}")
+            say(f"try     adamo-vh run --task T1 --body {url}")
+            say("stop    Ctrl+C")
+            stop.wait()
+    finally:
+        host.close_all()
+    say("stopped; every record is whole")
+
+
+def _key(told: str, option: str) -> str:
+    """A token: as it is told, or made up.
+
+    Raises:
+        ConfigError: It is too short to keep anybody out.
+    """
+    if told == NEW:
+        return secrets.token_urlsafe(24)
+    if told and (len(told) < _SHORTEST or not told.isascii() or not told.isprintable()):
+        raise ConfigError(
+            f"{option}: use at least {_SHORTEST} letters, digits and signs; or {NEW}, to have one "
+            "made up."
+        )
+    return told

@@ -1,0 +1,67 @@
+"""The command that serves the body to programs from outside."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+serve_app = typer.Typer()
+
+
+@serve_app.command("serve")
+def serve(
+    scene: Annotated[str, typer.Option(help="Where sessions play that name no scene.")] = "s1",
+    labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
+    figure: Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")] = "mara",
+    profile: Annotated[str, typer.Option(help="Of sessions that name none.")] = "paper",
+    resolution: Annotated[str, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = "1920x1080",
+    host: Annotated[
+        str, typer.Option(help="Where to listen; others than this machine need --token.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port; 0 for a free one.")] = 8000,
+    token: Annotated[
+        str,
+        typer.Option(help="What players must bring; new to make one up.", envvar="ADAMO_VH_TOKEN"),
+    ] = "",
+    judge: Annotated[
+        str,
+        typer.Option(
+            help="What a judge brings, to be told state, score and result; new to make one up.",
+            envvar="ADAMO_VH_JUDGE_TOKEN",
+        ),
+    ] = "",
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option(help="One more name under which this machine is asked; may be repeated."),
+    ] = None,
+    sessions: Annotated[int, typer.Option(help="So many are played at once.", min=1)] = 16,
+    idle: Annotated[
+        float, typer.Option(help="Seconds after which an unused session is closed.", min=1)
+    ] = 900.0,
+    max_steps: Annotated[int, typer.Option(help="Step cap of an episode.")] = 60,
+    out: Annotated[
+        Path | None, typer.Option(help="Where run folders go; a new folder below runs/ by default.")
+    ] = None,
+) -> None:
+    """Serve the body to programs from outside: HTTP, WebSocket, and what else is installed."""
+    from adamo_vh.cli.serve import serve as serve_body
+    from adamo_vh.record.termination import Limits
+
+    serve_body(
+        host,
+        port,
+        out,
+        token=token,
+        judge=judge,
+        hosts=allow_host or [],
+        scene=scene,
+        labeling=labeling,
+        figure=figure,
+        profile=profile,
+        resolution=resolution,
+        most_sessions=sessions,
+        idle_s=idle,
+        limits=Limits(max_steps=max_steps),
+    )
