@@ -26,6 +26,7 @@ from adamo_vh.perception import PerceptionConfig, Tagger
 from adamo_vh.record.run_folder import SCENE, SCRIPT
 from adamo_vh.record.trajectory import Trajectory
 from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.spare import engine_for
 
 ENGINES, TOOLS = "adamo_vh.engines", "adamo_vh.tools"
 """Entry-point groups under which other packages offer theirs."""
@@ -48,15 +49,20 @@ def create_engine(scene: str = "s1", figure: str = "mara", variation: int = 0) -
         ConfigError: No figure has this name, or the engine of another package has no variations.
     """
     name, _, rest = scene.partition(":")
-    if (made := offered_by_others(ENGINES).get(name)) is not None:
+    if is_offered(scene):
         if variation:
             raise ConfigError(
                 f"variation is {variation}: the scenes of {name!r} have none; use 0 there."
             )
-        return cast(World, made.load()(rest, figure))
+        return cast(World, offered_by_others(ENGINES)[name].load()(rest, figure))
     from adamo_vh.session.variations import built_in_engine
 
     return built_in_engine(scene, figure, variation)
+
+
+def is_offered(scene: str) -> bool:
+    """Whether a scene is of an engine that another package offers."""
+    return scene.partition(":")[0] in offered_by_others(ENGINES)
 
 
 def offered_by_others(group: str) -> dict[str, EntryPoint]:
@@ -97,8 +103,11 @@ def opened(
             if (folder / SCENE).is_file():
                 # It is the variation itself, whatever is drawn for its number today.
                 scene, variation = str(folder / SCENE), 0
-        world = create_engine(scene, config.figure, variation)
-        stack.callback(world.close)
+        if is_offered(scene):
+            world = create_engine(scene, config.figure, variation)
+            stack.callback(world.close)
+        else:
+            world = stack.enter_context(engine_for(scene, config.figure, variation))
     if config.profile.closeups and not abilities(world).closeup:
         raise ConfigError(
             f"This engine draws no close-ups, which profile {config.profile.name!r} is about; "

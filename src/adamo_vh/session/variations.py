@@ -186,6 +186,17 @@ def _kept_file(scene: Scene, number: int) -> Path:
     return cache_folder() / "variations" / f"{hashlib.sha256(what.encode()).hexdigest()[:32]}.json"
 
 
+def built_in_scene(scene: str, variation: int = 0) -> Scene:
+    """A built-in scene, or that of a file, or one of its variations.
+
+    Raises:
+        SceneError: The scene is unknown or wrong, or has no such variation.
+    """
+    from adamo_vh.runtime.scenes.scene import load_scene
+
+    return variation_of(scene, variation) if variation else load_scene(scene)
+
+
 def built_in_engine(scene: str, figure: str, variation: int = 0) -> BuiltinEngine:
     """The built-in engine with a scene or one of its variations.
 
@@ -195,6 +206,4 @@ def built_in_engine(scene: str, figure: str, variation: int = 0) -> BuiltinEngin
     """
     from adamo_vh.runtime.builtin import BuiltinEngine
 
-    if not variation:
-        return BuiltinEngine(scene, figure)
-    return BuiltinEngine(variation_of(scene, variation), figure, origin=scene)
+    return BuiltinEngine(built_in_scene(scene, variation), figure, origin=scene)

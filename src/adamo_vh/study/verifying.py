@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from adamo_vh.engine import World
 from adamo_vh.episode.sealing import sealed_digest
 from adamo_vh.errors import AdamoError, RecordError
-from adamo_vh.record.run_folder import RESULT, SCENE
+from adamo_vh.record.run_folder import RESULT
 from adamo_vh.record.signing import fingerprint, is_signed
-from adamo_vh.session.bodies import create_engine
 from adamo_vh.session.verifying import Verified, verify_run
 from adamo_vh.study.chain import CHAIN, LINK, Link, broken_links, read_chain
-from adamo_vh.study.plan import Planned
 from adamo_vh.study.running import ordered
 from adamo_vh.study.store import episode_folder, read_planned
 
@@ -54,12 +49,10 @@ def verify_episodes(
         ConfigError: There is a signature, and the extra `sign` is missing.
     """
     _, episodes = read_planned(folder)
-    with _Engines() as engines:
-        for planned in ordered(episodes):
-            run = episode_folder(folder, planned.key)
-            if (run / RESULT).exists():
-                engine = engines.of(planned, run) if replayed else None
-                yield planned.key, verify_run(run, key=key, replayed=replayed, engine=engine)
+    for planned in ordered(episodes):
+        run = episode_folder(folder, planned.key)
+        if (run / RESULT).exists():
+            yield planned.key, verify_run(run, key=key, replayed=replayed)
 
 
 def verify_chain(folder: Path, *, key: str = "") -> ChainVerified:
@@ -126,42 +119,3 @@ def _unlinked(folder: Path, keys: Sequence[str], links: Sequence[Link]) -> Itera
             )
         elif digest is not None and told is not None and digest != told:
             yield f"{episode} has another result than the one that was chained last"
-
-
-class _Engines:
-    """The engine of the episodes that come after one another, made once for all of them."""
-
-    def __init__(self) -> None:
-        """Start with none."""
-        self._place: tuple[str, ...] = ()
-        self._engine: World | None = None
-        self._closing = ExitStack()
-
-    def of(self, planned: Planned, run: Path) -> World | None:
-        """The engine of an episode; None leaves it to whoever executes the episode again.
-
-        A scene file in the run folder counts, whatever its name stands for today.
-        """
-        config, own = planned.config, run / SCENE
-        if ":" in config.scene:
-            return None
-        try:
-            file = hashlib.sha256(own.read_bytes()).hexdigest() if own.is_file() else ""
-            place = (config.scene, config.figure, file)
-            if place != self._place:
-                self._closing.close()
-                self._engine, self._place = None, place
-                made = create_engine(str(own) if file else config.scene, config.figure)
-                self._engine = made
-                self._closing.callback(made.close)
-        except (AdamoError, OSError):
-            return None
-        return self._engine
-
-    def __enter__(self) -> _Engines:
-        """Itself."""
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Close what was made."""
-        self._closing.close()
