@@ -109,9 +109,9 @@ class Painter:
         eye, half_angles = _aim(scene, size)
         _set_lights(scene)
         to_world = np.asarray(np.linalg.inv(eye), float)
-        for programs in self._programs.values():
+        for shadowed, programs in self._programs.items():
             for program in programs.values():
-                program.set(scene.nlight, caster, to_shadow @ to_world)
+                program.set(scene.nlight, caster if shadowed else -1, to_shadow @ to_world)
         shown &= brush.in_view(eye, half_angles)
         programs = self._programs[caster >= 0]
         brush.draw(shown & ~parts.of_glass, programs)

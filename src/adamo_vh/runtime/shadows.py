@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SHADOW_MAP_PX = 2560
 _MOST_DEG = 160.0
-_SLOPE, _OFFSET = -1.5, -4.0
+_SLOPE, _OFFSET = -2.5, -8.0
 """How far a surface's own shadow is kept behind it: see glPolygonOffset."""
 
 

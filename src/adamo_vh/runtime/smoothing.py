@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 _Picture = NDArray[np.uint8]
 _Mask = NDArray[np.bool_]
 _Index = NDArray[np.intp]
-_WITHIN = np.array([0, 0, 24, 2], float)
+_WITHIN = np.array([0, 0, 12, 1], float)
 """How much a label may change within one surface: part (two bytes), facing, distance."""
 
 

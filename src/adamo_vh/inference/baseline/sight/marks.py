@@ -144,7 +144,9 @@ def print_share(crop: NDArray[np.uint8], mask: NDArray[np.bool_]) -> float:
     if size < 200:
         return 0.0
     grey = cv2.cvtColor(crop, cv2.COLOR_BGR2GRAY)
-    inner = cv2.erode(mask.astype(np.uint8), np.ones((5, 5), np.uint8))
+    # Letters may look like what is behind the object, but they are in its midst.
+    whole = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    inner = cv2.erode(whole, np.ones((5, 5), np.uint8))
     kernel = cv2.getStructuringElement(cv2.MORPH_RECT, (7, 1))
     dark = cv2.morphologyEx(grey, cv2.MORPH_BLACKHAT, kernel)
     bright = cv2.morphologyEx(grey, cv2.MORPH_TOPHAT, kernel)
