@@ -1,0 +1,110 @@
+"""Shadows: what stands still is drawn once, and follows whatever it depends on."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from adamo_vh.geometry import Camera, Vec3
+from adamo_vh.runtime import physics
+from adamo_vh.runtime.builtin import BuiltinEngine
+from adamo_vh.runtime.shadows import ShadowMap
+
+SMALL = (320, 180)
+CUP = 45
+
+
+class Counted:
+    """Counts how often what stands still is drawn."""
+
+    def __init__(self, engine: BuiltinEngine, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.times = 0
+        kept = ShadowMap.draw
+
+        def draw(map_, light, view, known, still, moving):
+            def counted() -> None:
+                self.times += 1
+                still()
+
+            return kept(map_, light, view, known, counted, moving)
+
+        monkeypatch.setattr(ShadowMap, "draw", draw)
+        self._engine = engine
+
+    def after_drawing(self) -> int:
+        self._engine.stage.forget()
+        self._engine.capture(*SMALL)
+        return self.times
+
+
+@pytest.fixture
+def counted(engine: BuiltinEngine, monkeypatch: pytest.MonkeyPatch) -> Counted:
+    engine.stage.close()
+    return Counted(engine, monkeypatch)
+
+
+def test_furniture_is_drawn_once_whatever_the_body_and_the_objects_do(
+    engine: BuiltinEngine, counted: Counted
+) -> None:
+    assert counted.after_drawing() == 1
+    engine.body.walk(Vec3(-1.2, -1.0, 0.0))
+    engine.body.look(Vec3(0.0, 0.0, 0.7))
+    assert counted.after_drawing() == 1
+    cup = engine.world.box(CUP).center
+    physics.place(engine.world, CUP, cup + Vec3(0.05, 0.0, 0.1))
+    assert counted.after_drawing() == 1
+
+
+def test_it_is_drawn_again_when_the_light_or_the_furniture_moved(
+    engine: BuiltinEngine, counted: Counted
+) -> None:
+    model = engine.world.model
+    counted.after_drawing()
+    model.light_pos[0, 2] -= 0.1
+    assert counted.after_drawing() == 2
+    model.light_pos[0, 2] += 0.1
+    assert counted.after_drawing() == 3
+    table = next(iter(engine.world.furniture_of_body))
+    model.body_pos[table, 0] += 0.1
+    assert counted.after_drawing() == 4
+    model.body_pos[table, 0] -= 0.1
+
+
+@pytest.fixture
+def from_above(engine: BuiltinEngine) -> Camera:
+    cup = engine.world.box(CUP).center
+    return Camera(cup + Vec3(-0.25, 0.0, 0.5), 0.0, -1.1, math.radians(60), *SMALL)
+
+
+def test_the_shadow_of_an_object_goes_where_it_goes(
+    engine: BuiltinEngine, from_above: Camera
+) -> None:
+    renderer = engine.stage.renderer
+    before = renderer.draw(engine.data, from_above)
+    cup = engine.world.box(CUP).center
+    physics.place(engine.world, CUP, cup + Vec3(0.0, 0.12, 0.0))
+    engine.stage._pose(engine.stage.shown(engine.body.stance))
+    after = renderer.draw(engine.data, from_above)
+    shown = [drawn.layers[0].ids == CUP for drawn in (before, after)]
+    assert all(mask.sum() > 50 for mask in shown)
+    elsewhere = ~shown[0] & ~shown[1]
+    change = (after.rgb.astype(int) - before.rgb.astype(int)).max(axis=2)
+    assert (change[elsewhere] > 20).sum() > 50, "the old shadow is gone"
+    assert (change[elsewhere] < -20).sum() > 50, "the new one is there"
+
+
+def test_edges_of_shadows_are_soft(engine: BuiltinEngine, from_above: Camera) -> None:
+    """Between light and dark lie pixels of neither; MuJoCo's own shadows know only the two."""
+    renderer = engine.stage.renderer
+    drawn = renderer.color(engine.data, from_above).astype(float).max(axis=2)
+    casts = renderer._painter.parts.casts
+    kept = casts.copy()
+    casts[:] = False
+    lit = renderer.color(engine.data, from_above).astype(float).max(axis=2)
+    casts[:] = kept
+    share = drawn / np.maximum(lit, 1.0)
+    darkest = np.quantile(share, 0.02)
+    between = (share > darkest + 0.1) & (share < 0.9)
+    assert 30 < between.sum() < 0.1 * share.size
