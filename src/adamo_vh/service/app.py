@@ -23,6 +23,7 @@ from adamo_vh.errors import AdamoError
 from adamo_vh.readable import readable
 from adamo_vh.service import http, websocket
 from adamo_vh.service.hosting import Host
+from adamo_vh.service.openenv import face as openenv
 from adamo_vh.service.problems import told
 from adamo_vh.serving.admission import Rules
 from adamo_vh.serving.edge import Edge
@@ -47,6 +48,7 @@ class Face:
 FACES: Sequence[Face] = (
     Face("http", http.add),
     Face("websocket", websocket.add),
+    Face("openenv", openenv.add),
 )
 """All faces of a server."""
 

@@ -116,3 +116,23 @@ def test_any_study_is_a_task(tmp_path: Path) -> None:
     assert [sample.id for sample in mine.dataset] == [
         f"s1/T01/sem/paper/v{number:04d}" for number in range(3)
     ]
+
+
+def test_a_limit_of_inspect_ends_the_sample_without_a_score(played: Path, tmp_path: Path) -> None:
+    import inspect_ai
+    from inspect_ai.model import get_model
+
+    model = get_model("mockllm/model", custom_outputs=said(played), memoize=False)
+    (log,) = inspect_ai.eval(
+        "adamo_vh/paper",
+        model=model,
+        task_args=ONE,
+        log_dir=str(tmp_path / "logs"),
+        display="none",
+        token_limit=50,
+    )
+    (sample,) = log.samples
+    assert sample.limit is not None and sample.limit.type == "token"
+    scores = [score.value for score in (sample.scores or {}).values()]
+    assert all(value != {"completion": 0.0, "strict": 0.0} for value in scores)
+    assert log.results is None or all(score.scored_samples == 0 for score in log.results.scores)
