@@ -107,7 +107,7 @@ def test_a_picture_is_pixels() -> None:
     data = io.BytesIO()
     Image.new("L", (16, 9), 200).save(data, "PNG")
     pixels = picture(Frame(data.getvalue(), "image/png", 16, 9))
-    assert (pixels.shape, pixels.dtype) == ((9, 16, 3), np.uint8)
+    assert pixels.shape == (9, 16, 3) and pixels.dtype == np.uint8
     pixels[0, 0] = 0  # It is the caller's own.
     assert observation_space(16, 9)["image"].contains(pixels)
 
