@@ -122,9 +122,9 @@ class WebSocketLine:
                     if isinstance(back[0], Failed):
                         return back
             return self._asked(request)
-        except InvalidStatus as refused:
-            response = refused.response
-            raise _refused(response.status_code, bytes(response.body or b"")) from None
+        except InvalidStatus as error:
+            response = error.response
+            raise refused(response.status_code, bytes(response.body or b"")) from None
         except (OSError, WebSocketException, TimeoutError) as error:
             self.close()
             raise CutError(f"{type(error).__name__}: {error}") from None
@@ -189,7 +189,7 @@ class HttpLine:
             kind = {"content-type": "application/json"} if body else {}
             response = self._client.request(method, path, content=body, headers=kind)
             if response.status_code >= 400 and b'"failed"' not in response.content:
-                raise _refused(response.status_code, response.content)
+                raise refused(response.status_code, response.content)
             if isinstance(request, DescribeState) and response.is_success:
                 return Described(response.text), {}
             answer = _read(response.content)
@@ -201,7 +201,7 @@ class HttpLine:
         if picture.name not in self._frames:
             response = self._client.get(picture.href)
             if not response.is_success:
-                raise _refused(response.status_code, response.content)
+                raise refused(response.status_code, response.content)
             self._frames[picture.name] = _frame(picture, response.content)
             while len(self._frames) > _KEPT:
                 del self._frames[next(iter(self._frames))]
@@ -242,7 +242,7 @@ def _frame(picture: Picture, data: object) -> Frame:
     return Frame(data, picture.media_type, picture.width_px, picture.height_px)
 
 
-def _refused(status: int, body: bytes) -> Exception:
+def refused(status: int, body: bytes) -> Exception:
     """What a server says that lets nobody in."""
     try:
         said = str(json.loads(body)["error"]["message"])

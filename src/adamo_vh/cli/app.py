@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from adamo_vh.cli.agent_options import AgentBind, AgentCmd, AgentEnv, Isolation
+from adamo_vh.cli.body_options import BodyToken, BodyUrl, JudgeToken
 from adamo_vh.cli.engines_app import engines_app
 from adamo_vh.cli.exits import listed
 from adamo_vh.cli.mcp_app import mcp_app
@@ -34,6 +35,7 @@ app.add_typer(mcp_app)
 app.add_typer(engines_app)
 app.add_typer(serve_app)
 
+_KEYS = ("token", "judge_token")
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]
 Figure = Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")]
@@ -122,6 +124,9 @@ def run(
     agent_env: AgentEnv = None,
     agent_bind: AgentBind = None,
     isolation: Isolation = "auto",
+    body: BodyUrl = None,
+    token: BodyToken = "",
+    judge_token: JudgeToken = "",
     budget: Annotated[
         list[str] | None,
         typer.Option(
@@ -146,13 +151,14 @@ def run(
     json: Json = False,
 ) -> None:
     """Run one episode: an instruction in plain words, or a task of the benchmark."""
+    from adamo_vh.cli.away import run_away
     from adamo_vh.cli.episode import resume_and_show, run_and_show
     from adamo_vh.cli.settings import pairs, read_budget, refuse_if_given, refuse_others
     from adamo_vh.record.termination import Limits
 
     caps = read_budget(pairs(budget, "budget"))
     if resume is not None:
-        refuse_others(context, "resume", "budget", "sign", "json", "engine", "engine_port")
+        refuse_others(context, "resume", "budget", "sign", "json", "engine", "engine_port", *_KEYS)
         resume_and_show(resume, caps, sign, (engine, engine_port), as_json=json)
         return
     settings: dict[str, Any] = {
@@ -176,18 +182,20 @@ def run(
         from adamo_vh.cli.agent import play_and_show
 
         why = "does not go with --agent-cmd; leave it out."
-        refuse_if_given(context, why, "model", "tool_calls", "record", "video", "engine")
+        refuse_if_given(context, why, "model", "tool_calls", "record", "video", "engine", "body")
         settings |= {"isolation": isolation, "passed": agent_env or [], "shown": agent_bind or []}
         play_and_show(instruction, agent_cmd, out=out, sign=sign, as_json=json, **settings)
         return
     refuse_if_given(context, "is for --agent-cmd; add it.", "agent_env", "agent_bind", "isolation")
+    settings |= {"model": model, "tool_calls": tool_calls}
+    if body is not None:
+        run_away(context, instruction, (body, token, judge_token), settings, as_json=json)
+        return
     run_and_show(
         instruction,
         as_json=json,
         out=out,
         where=(engine, engine_port),
-        model=model,
-        tool_calls=tool_calls,
         record=record,
         video=video,
         sign=sign,

@@ -332,6 +332,25 @@ def read_result(folder: Path) -> EpisodeResult | None:
     return _read(path, EpisodeResult, is_old=read_head(folder).get("format") == OLD_FORMAT)
 
 
+def result_from(data: bytes, source: str) -> EpisodeResult:
+    """A result as somebody else tells it.
+
+    Args:
+        data: JSON.
+        source: Who tells it.
+
+    Raises:
+        RecordError: It cannot be read.
+    """
+    try:
+        result: EpisodeResult = _codec(EpisodeResult).validate_json(data)
+    except ValidationError:
+        raise RecordError(
+            f"{source} tells of a result that cannot be read; is it of another version of ADAMO?"
+        ) from None
+    return result
+
+
 def _read(path: Path, record_type: type[_T], *, is_old: bool = False) -> _T:
     try:
         text = read_text(path, max_bytes=_MOST_BYTES)
