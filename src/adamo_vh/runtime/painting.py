@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from adamo_vh.errors import RenderingError
 from adamo_vh.geometry import Array
 from adamo_vh.runtime import opengl as gl
+from adamo_vh.runtime import textures
 from adamo_vh.runtime.brush import Brush, Program, Programs
 from adamo_vh.runtime.canvas import COLOURS, LABELS, Canvas
 from adamo_vh.runtime.opengl import call
@@ -162,7 +163,10 @@ def _uploaded(model: mujoco.MjModel) -> mujoco.MjrContext:
     vis.quality.offsamples = vis.quality.shadowsize = 0
     vis.global_.offwidth = vis.global_.offheight = 1
     try:
-        return mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_50.value)
+        with textures.left_out(model):
+            context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_50.value)
+        textures.upload(model, context)
+        return context
     finally:
         vis.quality.offsamples, vis.quality.shadowsize = kept
         vis.global_.offwidth, vis.global_.offheight = sizes
