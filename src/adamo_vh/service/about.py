@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 
 from adamo_vh.action_server.wire import VERSION
@@ -12,6 +13,11 @@ from adamo_vh.perception import Labeling
 from adamo_vh.service.hosted import Hosted
 from adamo_vh.service.hosting import Host
 from adamo_vh.session.builtin import scene_names
+
+
+@cache
+def _version() -> str:
+    return version("adamo-vh")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +45,7 @@ class About:
         terms = host.terms
         return cls(
             VERSION,
-            version("adamo-vh"),
+            _version(),
             scene_names(),
             tuple(Labeling),
             tuple(PROFILES),
