@@ -9,7 +9,7 @@ import typer
 
 from adamo_vh.cli.agent_options import AgentBind, AgentCmd, AgentEnv, Isolation
 from adamo_vh.cli.body_options import BodyToken, BodyUrl, JudgeToken
-from adamo_vh.cli.engines_app import engines_app
+from adamo_vh.cli.engines_app import engines_app, export_scene
 from adamo_vh.cli.exits import listed
 from adamo_vh.cli.mcp_app import mcp_app
 from adamo_vh.cli.serve_app import serve_app
@@ -264,6 +264,9 @@ def explain(
     from adamo_vh.cli.explain import explain_and_show
 
     explain_and_show(run_dir, as_json=json)
+
+
+scenes_app.command("export")(export_scene)
 
 
 @scenes_app.callback()

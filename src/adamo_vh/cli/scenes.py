@@ -17,6 +17,7 @@ from adamo_vh.errors import ConfigError, FileError
 from adamo_vh.files import write_whole
 from adamo_vh.session.builtin import (
     SceneReport,
+    export,
     inspect_scene_file,
     known_scenes,
     light_of,
@@ -104,6 +105,13 @@ def vary(file: str, variation: int, out: Path | None, *, as_json: bool) -> None:
         say(f"{item.id:4d} {item.asset} on {item.on}, turned {item.yaw_deg:g} degrees{more}")
     for path in written:
         say(path)
+
+
+def export_files(file: str, variation: int, out: Path) -> None:
+    """Write a scene with its meshes for another engine."""
+    written = export(file, variation, out)
+    megabytes = sum(path.stat().st_size for path in written) / 1e6
+    say(f"{written[0]} and {len(written) - 1} meshes, {megabytes:.1f} MB")
 
 
 def _written(report: SceneReport, out: Path | None) -> list[Path]:

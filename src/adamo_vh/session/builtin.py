@@ -154,6 +154,29 @@ def write_scene(scene: Scene, file: Path) -> Path:
     return write_whole(file, scene_toml(scene).encode())
 
 
+def export(file: str, variation: int, folder: Path) -> list[Path]:
+    """Write a scene with its meshes for another engine; what was written, scene.json first.
+
+    Args:
+        file: Scene file or built-in name.
+        variation: 0 is the scene as it stands.
+        folder: Where to; is made.
+
+    Raises:
+        SceneError: The scene is unknown or wrong.
+        FileError: The folder cannot be written.
+    """
+    from adamo_vh.runtime.builtin import BuiltinEngine
+    from adamo_vh.runtime.scenes.exporting import export_scene
+
+    scene = read_scene(file, variation)
+    engine = BuiltinEngine(scene)
+    try:
+        return export_scene(scene, engine.state(), engine.body.info, folder)
+    finally:
+        engine.close()
+
+
 def _pictures(
     scene: Scene, engine: BuiltinEngine, names: tuple[str, ...] | None
 ) -> dict[str, Picture]:

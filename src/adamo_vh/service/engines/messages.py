@@ -37,7 +37,7 @@ NO_OBJECT = 65535
 """Value of a pixel in a picture of ids that shows no object."""
 
 ColourCode = Literal["png", "jpeg", "rgb8"]
-IdsCode = Literal["png16", "rgb24", "int16"]
+IdsCode = Literal["png16", "rgb555", "int16"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,12 +152,13 @@ class CaptureAnswer:
     camera: View
     body: BodyState
     objects: tuple[SeenBox, ...]
-    """Those with a pixel."""
+    """Those with a pixel; others may be among them, if ids are sent."""
     colour: ColourCode
     """"png", "jpeg", or "rgb8": rows from the top, three bytes a pixel."""
     ids: IdsCode | None = None
-    """"png16": grey PNG of 16 bits; "rgb24": RGB PNG, id = 65536 R + 256 G + B; "int16": rows from
-    the top, two bytes a pixel, low byte first. 65535 (in RGB also white) is no object."""
+    """"png16": grey PNG of 16 bits; "rgb555": RGB PNG, five bits of the id in each colour,
+    red first, each in the middle of a step of 8 (8 bits + 4), since renderers round; "int16": rows
+    from the top, two bytes a pixel, low byte first. No object is 65535, or white in RGB."""
     layers: int = 0
     """How many pictures of ids follow: one, or two where the second leaves out transparent things;
     none if boxes are told."""

@@ -14,6 +14,8 @@ from adamo_vh.observation import NOTHING
 from adamo_vh.service.engines.messages import NO_OBJECT, ColourCode, IdsCode, SeenBox
 
 _Ids = NDArray[np.int16]
+_WHITE = 0x7FFF
+"""No object in "rgb555"."""
 _MODES = {"png": ("PNG", ("RGB", "RGBA")), "jpeg": ("JPEG", ("RGB",))}
 
 
@@ -36,13 +38,11 @@ def read_ids(data: bytes, code: IdsCode, width_px: int, height_px: int) -> _Ids:
     Raises:
         EngineError: The bytes are no such picture, or a pixel holds what is no id.
     """
-    if code == "rgb24":
+    if code == "rgb555":
         picture = _opened(data, "PNG", ("RGB", "RGBA"), (width_px, height_px))
-        red, green, blue = np.moveaxis(np.asarray(picture.convert("RGB")), -1, 0).astype(np.uint16)
-        white = (red == 255) & (green == 255) & (blue == 255)
-        if (beyond := (red > 0) & ~white).any():
-            raise EngineError(f"a pixel is {int(red[beyond][0])} red, which is no id.")
-        values = np.where(white, NO_OBJECT, green * 256 + blue).astype(np.uint16)
+        red, green, blue = np.moveaxis(np.asarray(picture.convert("RGB")), -1, 0) >> 3
+        values = red.astype(np.uint16) << 10 | green.astype(np.uint16) << 5 | blue
+        values[values == _WHITE] = NO_OBJECT
     elif code == "png16":
         picture = _opened(data, "PNG", ("I;16", "I;16B", "I", "L"), (width_px, height_px))
         values = np.asarray(picture).astype(np.uint16)
