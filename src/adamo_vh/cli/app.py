@@ -9,9 +9,10 @@ import typer
 
 from adamo_vh.cli.agent_options import AgentBind, AgentCmd, AgentEnv, Isolation
 from adamo_vh.cli.body_options import BodyToken, BodyUrl, JudgeToken
-from adamo_vh.cli.engines_app import engines_app, export_scene
+from adamo_vh.cli.engines_app import engines_app
 from adamo_vh.cli.exits import listed
 from adamo_vh.cli.mcp_app import mcp_app
+from adamo_vh.cli.scenes_app import scenes_app
 from adamo_vh.cli.serve_app import serve_app
 from adamo_vh.cli.study_app import study_app
 from adamo_vh.cli.tasks_app import tasks_app
@@ -24,7 +25,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.add_typer(tasks_app, name="tasks")
-scenes_app = typer.Typer(help="The scenes, built-in and own.", invoke_without_command=True)
 app.add_typer(scenes_app, name="scenes")
 models_app = typer.Typer(help="The models.", no_args_is_help=True)
 app.add_typer(models_app, name="models")
@@ -264,60 +264,6 @@ def explain(
     from adamo_vh.cli.explain import explain_and_show
 
     explain_and_show(run_dir, as_json=json)
-
-
-scenes_app.command("export")(export_scene)
-
-
-@scenes_app.callback()
-def scenes(context: typer.Context, json: Json = False) -> None:
-    """List the scenes that come with the package."""
-    if context.invoked_subcommand is None:
-        from adamo_vh.cli.scenes import list_scenes
-
-        list_scenes(as_json=json)
-
-
-@scenes_app.command("check")
-def scenes_check(
-    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for the pictures; scene-NAME by default.")
-    ] = None,
-    json: Json = False,
-) -> None:
-    """Say what is wrong with a scene, and draw it from above and from the start."""
-    from adamo_vh.cli.scenes import check
-
-    check(file, out, as_json=json)
-
-
-@scenes_app.command("show")
-def scenes_show(
-    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for the pictures; scene-NAME by default.")
-    ] = None,
-) -> None:
-    """Draw a scene from above, from the start and from each corner."""
-    from adamo_vh.cli.scenes import show
-
-    show(file, out)
-
-
-@scenes_app.command("vary")
-def scenes_vary(
-    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
-    variation: Annotated[
-        int, typer.Option(help="Which one: 1 to 999 to tune on, from 1000 to test on.")
-    ],
-    out: Annotated[Path | None, typer.Option(help="Scene file to write: FILE.toml.")] = None,
-    json: Json = False,
-) -> None:
-    """Show a variation of a scene, in words and pictures, and write it as a scene file."""
-    from adamo_vh.cli.scenes import vary
-
-    vary(file, variation, out, as_json=json)
 
 
 @models_app.command("check")

@@ -31,14 +31,3 @@ def conformance(
     from adamo_vh.cli.conformance import examine
 
     examine(target, scene, only or (), html, json=json)
-
-
-def export_scene(
-    file: Annotated[str, typer.Argument(help="A scene file, or the name of a built-in scene.")],
-    out: Annotated[Path, typer.Option(help="Folder to write; is made.")],
-    variation: Annotated[int, typer.Option(help="Variation of the scene; 0 as it stands.")] = 0,
-) -> None:
-    """Write a scene for another engine: scene.json, and a GLB with textures for each asset."""
-    from adamo_vh.cli.scenes import export_files
-
-    export_files(file, variation, out)

@@ -14,8 +14,9 @@ from tools.figures.variant import PEOPLE
 
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Camera, Vec3
+from adamo_vh.runtime.assets.glb_writing import linear
 from adamo_vh.runtime.human.clips import Clip
-from adamo_vh.runtime.human.glb import linear, write_glb
+from adamo_vh.runtime.human.glb import write_glb
 from adamo_vh.runtime.human.looks import HEAD_GARMENTS, VARIANTS, load_figure
 from adamo_vh.runtime.human.skeleton import EYES, INDEX, JOINTS, REST, Pose, joint_frames
 from adamo_vh.runtime.human.skin_mujoco import add_human, body_name, pose_human

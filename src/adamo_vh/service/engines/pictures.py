@@ -48,7 +48,7 @@ def read_ids(data: bytes, code: IdsCode, width_px: int, height_px: int) -> _Ids:
         values = np.asarray(picture).astype(np.uint16)
     else:
         values = _raw(data, np.dtype("<u2"), (height_px, width_px)).astype(np.uint16)
-    ids = values.view(np.int16)  # The number for no object is `NOTHING` then.
+    ids: _Ids = values.view(np.int16)  # The number for no object is `NOTHING` then.
     if (beyond := ids < NOTHING).any():
         raise EngineError(f"a pixel holds {int(values[beyond][0])}, which is no id.")
     return ids
