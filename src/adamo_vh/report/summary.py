@@ -60,7 +60,7 @@ KINDS = {
     ModelKind.RANDOM: "random player, no VLM",
     ModelKind.SCRIPTED: "scripted player, no VLM",
     ModelKind.REPLAY: "recorded answers, no live model",
-    ModelKind.OUTSIDE: "a mind from outside, which nobody has looked into",
+    ModelKind.OUTSIDE: "a program from outside, which may be no VLM",
 }
 """What kind of player a model is, so that nobody takes one for another."""
 FAILURES = {

@@ -23,6 +23,7 @@ from adamo_vh.errors import AdamoError
 from adamo_vh.readable import readable
 from adamo_vh.service import http, websocket
 from adamo_vh.service.hosting import Host
+from adamo_vh.service.mcp import face as mcp
 from adamo_vh.service.openenv import face as openenv
 from adamo_vh.service.problems import told
 from adamo_vh.serving.admission import Rules
@@ -48,6 +49,7 @@ class Face:
 FACES: Sequence[Face] = (
     Face("http", http.add),
     Face("websocket", websocket.add),
+    Face("mcp", mcp.add),
     Face("openenv", openenv.add),
 )
 """All faces of a server."""

@@ -68,7 +68,8 @@ class Host:
         """
         self.terms = terms
         self.out = out
-        self._engines = engines or Engines()
+        self.engines = engines or Engines()
+        """Where the sessions are played, those of every face."""
         self._sessions: dict[str, Hosted] = {}
         self._folders: OrderedDict[str, Path] = OrderedDict()
         """Run folders of the sessions that were closed, for a judge."""
@@ -119,13 +120,13 @@ class Host:
             SceneError: The scene is wrong.
         """
         config = self._config(asked)
-        self._engines.take(config)
-        self._engines.give_back(config)
+        self.engines.take(config)
+        self.engines.give_back(config)
 
     def _begun(self, config: EpisodeConfig, player: str) -> Hosted:
         name = secrets.token_urlsafe(12)
         watch = Watch(lambda frame: f"/v1/sessions/{name}/frames/{frame}")
-        lender = self._engines.take(config)
+        lender = self.engines.take(config)
         try:
             stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
             words = re.sub(r"[^a-z0-9]+", "-", (config.task or "free").lower())
@@ -134,7 +135,7 @@ class Host:
                 config, folder, player=player, lender=lender, observers=(watch,)
             )
         except BaseException:
-            self._engines.give_back(config)
+            self.engines.give_back(config)
             raise
         return Hosted(name, body, watch)
 
@@ -208,7 +209,7 @@ class Host:
         try:
             hosted.close()
         finally:
-            self._engines.give_back(hosted.body.config)
+            self.engines.give_back(hosted.body.config)
 
     def close_all(self) -> None:
         """Close every session, and the engines: every record is whole, and can be shown."""
@@ -216,7 +217,7 @@ class Host:
         self._sweeper.join()
         for hosted in self.sessions():
             self.close(hosted.id)
-        self._engines.close()
+        self.engines.close()
 
     def _played(self) -> int:
         return sum(not hosted.body.ended for hosted in self._sessions.values())

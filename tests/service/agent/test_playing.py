@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.service.mcp.shared_engine import engines_of
 from tests.session.test_outside_episodes import CALLS
 
 import adamo_vh
@@ -50,7 +51,7 @@ def _play(
         program,
         {**SMALL, **(settings or {})},
         folder,
-        make_engine=lambda *_: lent.lender.lend(),
+        engines=engines_of(lent),
     )
 
 
@@ -95,9 +96,7 @@ def test_what_is_hidden_stays_hidden_in_what_is_shown(lent: LentWorld, tmp_path:
 @BOXED
 def test_in_the_box_a_program_that_is_not_there_is_no_zero(lent: LentWorld, tmp_path: Path) -> None:
     program = Program(f"/usr/bin/env {tmp_path}/no-such", "bwrap")
-    result = play_program(
-        program, SMALL, tmp_path / "run", make_engine=lambda *_: lent.lender.lend()
-    )
+    result = play_program(program, SMALL, tmp_path / "run", engines=engines_of(lent))
     assert result.termination is TerminationReason.BROKEN and result.completion is None
     assert "exit code 127" in result.answer
 

@@ -6,13 +6,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.service.mcp.shared_engine import engines_of
 
+from adamo_vh.benchmark.tasks import task
+from adamo_vh.benchmark.tasks.writing import task_text
 from adamo_vh.cognition.profile import PROFILES
 from adamo_vh.errors import ConfigError
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.service.mcp.episodes import Episodes
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.service.mcp.prompts import render
+from adamo_vh.service.sharing import BusyError, Engines
 from adamo_vh.session.lending import LentWorld
 from adamo_vh.session.runs import run_episode
 
@@ -75,7 +79,7 @@ def test_only_own_runs_are_found(lent: LentWorld, tmp_path: Path, engine: Builti
     run_episode("Sing.", model="random", engine=engine, out=other, resolution="160x90")
     (tmp_path / "empty").mkdir()
     offer = Offer({"resolution": "160x90"}, tmp_path)
-    with Episodes(offer, make_engine=lambda *_: lent.lender.lend()) as episodes:
+    with Episodes(offer, engines=engines_of(lent)) as episodes:
         name, _ = episodes.begin("me", {"task": "T8"})
         (tmp_path / "link").symlink_to(tmp_path / name)
         for wrong in ("other", "empty", "link", "..", "", f"../{tmp_path.name}/{name}", "a" * 200):
@@ -87,24 +91,23 @@ def test_only_own_runs_are_found(lent: LentWorld, tmp_path: Path, engine: Builti
         assert episodes.find(name, "me") is not None
 
 
-def test_scenes_that_nobody_plays_make_room(lent: LentWorld, tmp_path: Path) -> None:
-    made = []
+def test_what_does_not_begin_leaves_nothing_behind(lent: LentWorld, tmp_path: Path) -> None:
+    lacking = tmp_path / "own.toml"
+    lacking.write_text(task_text(task("T1")).replace("34", "999").replace('"T1"', '"OWN"'))
+    settings = {"resolution": "160x90", "task": str(lacking)}
+    offer = Offer(settings, tmp_path / "runs", tmp_path / "runs" / "one")
+    with (
+        Episodes(offer, engines=engines_of(lent)) as episodes,
+        pytest.raises(ConfigError, match="needs object 999"),
+    ):
+        episodes.find("one", "me")
+    assert not (tmp_path / "runs").exists()
 
-    def engine(scene: str, figure: str, variation: int) -> LentWorld:
-        made.append(variation)
-        return lent.lender.lend()
 
-    offer = Offer({"resolution": "160x90"}, tmp_path)
-    with Episodes(offer, make_engine=engine) as episodes:
-        held = []
-        for number in range(4):
-            # The engine here has no variations, which is told after it was made.
-            with pytest.raises(ConfigError, match="variation"):
-                episodes.begin("me", {"task": "T8", "variation": number + 1})
-            held.append(number + 1)
-        _, first = episodes.begin("me", {"task": "T8"})
-        assert made == [*held, 0]
-        _, second = episodes.begin("me", {"task": "T8"})
-        assert made == [*held, 0] and not first.ended and not second.ended
-    assert first.ended and second.ended
-    assert sorted(path.name[:3] for path in tmp_path.iterdir()) == ["t8-", "t8-"]
+def test_a_server_that_has_no_room_says_so(lent: LentWorld, tmp_path: Path) -> None:
+    engines = Engines(most=0, ready={("s1", "mara", 0): lent.lender})
+    with Episodes(Offer({"resolution": "160x90"}, tmp_path), engines=engines) as episodes:
+        with pytest.raises(BusyError, match="scenes are played in already"):
+            episodes.begin("me", {"task": "T8", "scene": "S2"})
+        name, _ = episodes.begin("me", {"task": "T8"})
+    assert [path.name for path in tmp_path.iterdir()] == [name]

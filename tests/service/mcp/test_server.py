@@ -14,6 +14,7 @@ import mcp_types as types
 import pytest
 from mcp import Client
 from mcp.shared.exceptions import MCPError
+from tests.service.mcp.shared_engine import engines_of
 from tests.session.test_outside_episodes import CALLS
 
 from adamo_vh.episode.result import read_result
@@ -33,7 +34,7 @@ Play = Callable[[Client], Awaitable[None]]
 def _served(lent: LentWorld, root: Path, **more: Any) -> Iterator[Episodes]:
     settings = {**SMALL, **more.pop("settings", {})}
     offer = Offer(settings, root, **more)
-    with Episodes(offer, make_engine=lambda *_: lent.lender.lend()) as episodes:
+    with Episodes(offer, engines=engines_of(lent)) as episodes:
         yield episodes
 
 

@@ -25,11 +25,11 @@ from adamo_vh.inference.redaction import redacted
 from adamo_vh.record.trajectory import Observer
 from adamo_vh.service.agent.box import HOME, INNER_PORT, Box, box_problem, found_program
 from adamo_vh.service.agent.program import Finished, run_program
-from adamo_vh.service.mcp.episodes import Episodes, MakeEngine, Watch
+from adamo_vh.service.mcp.episodes import Episodes, Watch
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.service.mcp.server import create_server
 from adamo_vh.service.mcp.transports import PATH, serve_http, serve_socket
-from adamo_vh.session.bodies import create_engine
+from adamo_vh.service.sharing import Engines
 from adamo_vh.session.outside import OutsideEpisode
 
 FOLDER, RECORD = "agent", "agent.json"
@@ -68,7 +68,7 @@ def play_program(
     *,
     watch: Watch = lambda line: None,
     observers: Sequence[Observer] = (),
-    make_engine: MakeEngine = create_engine,
+    engines: Engines | None = None,
 ) -> EpisodeResult:
     """Let a program play one episode, and score it.
 
@@ -81,7 +81,7 @@ def play_program(
         folder: A new run folder.
         watch: Is told what happens.
         observers: Are told of every event.
-        make_engine: Makes the engine of the episode.
+        engines: Where it is played; an engine is made for it by default.
 
     Raises:
         ConfigError: A setting is wrong, there is no such program, or no box and it must have one.
@@ -95,7 +95,7 @@ def play_program(
         if not path.exists():
             raise ConfigError(f"--agent-bind {path}: there is no such file or folder.")
     offer = Offer(settings, fixed=folder.absolute(), player=program.name, isolation=isolation)
-    with Episodes(offer, make_engine=make_engine, observers=observers) as episodes:
+    with Episodes(offer, engines=engines, observers=observers) as episodes:
         episode = episodes.find(episodes.fixed, program.name)
         assert episode is not None  # It begins here.
         episode.view()

@@ -10,7 +10,6 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
-from adamo_vh.engine import World
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import read_manifest
 from adamo_vh.errors import ConfigError
@@ -18,21 +17,18 @@ from adamo_vh.inference.model import ModelKind
 from adamo_vh.record.run_folder import FRAMES, MANIFEST, RESULT, SCENE, reserve
 from adamo_vh.record.trajectory import Observer
 from adamo_vh.service.mcp.offer import Offer
-from adamo_vh.session.bodies import create_engine
-from adamo_vh.session.lending import Lender, LentWorld
+from adamo_vh.service.sharing import Engines
+from adamo_vh.session.lending import LentWorld
 from adamo_vh.session.outside import OutsideEpisode
 from adamo_vh.session.session import read_unfinished
 
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 _FRAME = re.compile(r"[0-9a-f]{24}\.(jpg|png)")
 _TYPES = {".jpg": "image/jpeg", ".png": "image/png"}
-_MOST_ENGINES = 4
 _CHECK_S = 5.0
 
 Watch = Callable[[str], None]
 """Is told what happens, in lines for whoever runs the server."""
-MakeEngine = Callable[[str, str, int], World]
-"""Makes the engine of a scene, a figure and a variation."""
 
 
 class Episodes:
@@ -42,7 +38,7 @@ class Episodes:
         self,
         offer: Offer,
         watch: Watch = lambda line: None,
-        make_engine: MakeEngine = create_engine,
+        engines: Engines | None = None,
         observers: Sequence[Observer] = (),
     ) -> None:
         """Play nothing yet.
@@ -50,16 +46,16 @@ class Episodes:
         Args:
             offer: What is played.
             watch: Is told what happens; never the players.
-            make_engine: Makes the engine of a scene, a figure and a variation.
+            engines: Where it is played; made when they are needed, and closed here, by default.
             observers: Are told of every event of the episodes that begin here.
         """
         self.offer = offer
         self._watch = watch
-        self._make_engine = make_engine
+        self._engines = engines or Engines()
+        self._has_own_engines = engines is None
         self._observers = observers
         self._lock = threading.RLock()
         self._live: dict[str, OutsideEpisode] = {}
-        self._engines: dict[tuple[str, str, int], Lender] = {}
         self._closing = threading.Event()
         self._sweeper = threading.Thread(target=self._sweep, name="adamo-mcp-idle", daemon=True)
         self._sweeper.start()
@@ -141,10 +137,8 @@ class Episodes:
             left = list(self._live.values())
         for episode in left:
             episode.close()
-        with self._lock:
-            for lender in self._engines.values():
-                lender.close()
-            self._engines.clear()
+        if self._has_own_engines:
+            self._engines.close()
 
     def __enter__(self) -> Episodes:
         """Itself."""
@@ -178,7 +172,8 @@ class Episodes:
         with ExitStack() as stack:
             # A folder that holds nothing is no episode.
             stack.callback(_remove_empty, folder)
-            lent = self._lender(config).lend()
+            lent = self._engines.take(config).lend()
+            stack.callback(self._engines.give_back, config)
             self._live[folder.name] = episode = OutsideEpisode.begin(
                 config,
                 folder,
@@ -186,7 +181,7 @@ class Episodes:
                 engine=lent,
                 isolation=self.offer.isolation,
                 observers=self._observers,
-                done=self._done(folder, lent),
+                done=self._done(folder, config, lent),
             )
             stack.pop_all()
         self._watch(f"{folder.name}: {config.task or 'free'} in {config.scene}, run in {folder}")
@@ -194,18 +189,22 @@ class Episodes:
 
     def _resumed(self, folder: Path) -> OutsideEpisode:
         # With its own scene in the folder, it is that one whatever is drawn for its number today.
+        config = read_manifest(folder).config
         own = (folder / SCENE).is_file()
-        lent = None if own else self._lender(read_manifest(folder).config).lend()
-        done = self._done(folder, lent)
+        lent = None if own else self._engines.take(config).lend()
+        done = self._done(folder, config, lent)
         self._live[folder.name] = OutsideEpisode.resume(folder, engine=lent, done=done)
         return self._live[folder.name]
 
-    def _done(self, folder: Path, lent: LentWorld | None) -> Callable[[OutsideEpisode], None]:
+    def _done(
+        self, folder: Path, config: EpisodeConfig, lent: LentWorld | None
+    ) -> Callable[[OutsideEpisode], None]:
         """Ends what an episode has here, and tells what came of it."""
 
         def done(episode: OutsideEpisode) -> None:
             if lent is not None:
                 lent.close()
+                self._engines.give_back(config)
             with self._lock:
                 del self._live[folder.name]
             try:
@@ -219,23 +218,6 @@ class Episodes:
             self._watch(f"{folder.name}: ended ({result.termination}), {score}, see {folder}")
 
         return done
-
-    def _lender(self, config: EpisodeConfig) -> Lender:
-        """The engine of a scene, for all episodes in it."""
-        key = (config.scene, config.figure, config.variation)
-        if key not in self._engines:
-            used = {
-                (e.config.scene, e.config.figure, e.config.variation) for e in self._live.values()
-            }
-            for idle in [known for known in self._engines if known not in used]:
-                if len(self._engines) >= _MOST_ENGINES:
-                    self._engines.pop(idle).close()
-            if len(self._engines) >= _MOST_ENGINES:
-                raise ConfigError(
-                    "The server has no room for one more scene; try another or later."
-                )
-            self._engines[key] = Lender(self._make_engine(*key))
-        return self._engines[key]
 
     def _sweep(self) -> None:
         """Close what nobody has come back to."""

@@ -20,6 +20,7 @@ from adamo_vh.service.mcp.episodes import Episodes, Watch
 from adamo_vh.service.mcp.offer import ANSWER, END, EPISODE, INSTRUCTIONS, LONGEST, LOOK_AGAIN, NEW
 from adamo_vh.service.mcp.prompts import render
 from adamo_vh.service.mcp.shown import content, instructions, instructions_uri, read_uri, text
+from adamo_vh.service.sharing import BusyError
 from adamo_vh.session.outside import ENDED, OutsideEpisode
 
 _T = TypeVar("_T")
@@ -175,7 +176,7 @@ class _Face:
             return await anyio.to_thread.run_sync(work, limiter=self._threads)
         except _ToldError:
             raise
-        except (ConfigError, SceneError) as error:
+        except (ConfigError, SceneError, BusyError) as error:
             raise _ToldError(str(error)) from None
         except AdamoError as error:
             # What is wrong with a run folder is for whoever runs the server.

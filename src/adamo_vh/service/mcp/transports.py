@@ -26,18 +26,20 @@ MAX_BODY_BYTES = 1_000_000
 _MOST_CLIENTS = 64
 
 
-def http_manager(server: Server[Any]) -> StreamableHTTPSessionManager:
-    """What speaks MCP over HTTP; its `run` must be open while it does.
+def http_route(server: Server[Any]) -> tuple[Route, StreamableHTTPSessionManager]:
+    """The route at which MCP is spoken, and its manager, whose `run` must be open while it is.
 
     Args:
         server: As of `create_server`.
     """
-    return StreamableHTTPSessionManager(
+    manager = StreamableHTTPSessionManager(
         server,
         json_response=True,
         max_request_body_size=MAX_BODY_BYTES,
         max_sessions=_MOST_CLIENTS,
     )
+    endpoint, methods = StreamableHTTPASGIApp(manager), ["GET", "POST", "DELETE"]
+    return Route(PATH, endpoint, methods=methods, include_in_schema=False), manager
 
 
 def create_app(server: Server[Any]) -> App:
@@ -46,14 +48,14 @@ def create_app(server: Server[Any]) -> App:
     Args:
         server: As of `create_server`.
     """
-    manager = http_manager(server)
+    route, manager = http_route(server)
 
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
         async with manager.run():
             yield
 
-    return Starlette(routes=[Route(PATH, StreamableHTTPASGIApp(manager))], lifespan=lifespan)
+    return Starlette(routes=[route], lifespan=lifespan)
 
 
 @contextmanager
