@@ -108,3 +108,12 @@ def test_edges_of_shadows_are_soft(engine: BuiltinEngine, from_above: Camera) ->
     darkest = np.quantile(share, 0.02)
     between = (share > darkest + 0.1) & (share < 0.9)
     assert 30 < between.sum() < 0.1 * share.size
+
+
+def test_a_plain_wall_has_no_edge_where_the_light_looks_no_further() -> None:
+    engine = BuiltinEngine("s2")
+    rgb = engine.capture(960, 540).rgb
+    engine.close()
+    # The right wall, from above the plane in which the lamp hangs to below it.
+    rows = rgb[150:260, 780:850].mean(axis=(1, 2))
+    assert np.abs(rows[3:] - rows[:-3]).max() < 3.0

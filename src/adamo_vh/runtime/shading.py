@@ -64,7 +64,8 @@ varying float facing;
 
 void main() {
 #ifdef SHADOW
-    vec3 colour = base + shadow2DProj(shadow, place).r * lit;
+    // The map shows what is before the light; behind it nothing is known, and all is lit.
+    vec3 colour = base + (place.w > 0.0 ? shadow2DProj(shadow, place).r : 1.0) * lit;
 #else
     vec3 colour = base + lit;
 #endif
