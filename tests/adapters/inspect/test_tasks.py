@@ -136,3 +136,70 @@ def test_a_limit_of_inspect_ends_the_sample_without_a_score(played: Path, tmp_pa
     scores = [score.value for score in (sample.scores or {}).values()]
     assert all(value != {"completion": 0.0, "strict": 0.0} for value in scores)
     assert log.results is None or all(score.scored_samples == 0 for score in log.results.scores)
+
+
+def test_an_agent_of_inspect_drives_the_body_with_our_tools(played: Path, tmp_path: Path) -> None:
+    out = tmp_path / "runs"
+    log = evaluated(said(played), tmp_path / "logs", out=str(out), loop="inspect")
+    assert log.status == "success", log.error
+    (sample,) = log.samples
+    assert sample.scores["episode"].value == {"completion": 1.0, "strict": 1.0}
+    roles = [message.role for message in sample.messages]
+    assert roles == ["system", "user", "assistant", "tool", "assistant"]
+    assert "in your hand" in sample.messages[3].text
+    calls = [event for event in sample.events if event.event == "tool"]
+    assert [event.function for event in calls] == ["Pick"]
+    (run,) = out.iterdir()
+    here, there = read_result(run), read_result(played)
+    assert here is not None and there is not None
+    assert (here.state_hash, here.answer) == (there.state_hash, there.answer)
+    assert here.model == "inspect:mockllm/model"
+
+
+def test_any_agent_of_inspect_can_take_the_seat(played: Path, tmp_path: Path) -> None:
+    import inspect_ai
+    from inspect_ai.agent import react
+    from inspect_ai.model import get_model
+
+    from adamo_vh.adapters.inspect.tasks import BodyTools
+
+    outputs = said(played)
+    (log,) = inspect_ai.eval(
+        "adamo_vh/study",
+        model=get_model("mockllm/model", custom_outputs=outputs, memoize=False),
+        task_args={**ONE, "loop": "inspect"},
+        solver=react(tools=[BodyTools()], submit=False),
+        log_dir=str(tmp_path / "logs"),
+        display="none",
+        message_limit=12,
+    )
+    (sample,) = log.samples
+    assert sample.scores["episode"].value == {"completion": 1.0, "strict": 1.0}
+
+
+def test_a_limit_of_inspect_in_its_own_loop_is_a_truncation(played: Path, tmp_path: Path) -> None:
+    import inspect_ai
+    from inspect_ai.model import get_model
+
+    looking = said(played)[:1] * 5  # The same call again and again.
+    out = tmp_path / "runs"
+    (log,) = inspect_ai.eval(
+        "adamo_vh/paper",
+        model=get_model("mockllm/model", custom_outputs=looking, memoize=False),
+        task_args={**ONE, "loop": "inspect", "out": str(out)},
+        log_dir=str(tmp_path / "logs"),
+        display="none",
+        message_limit=5,
+    )
+    assert log.samples[0].limit.type == "message"
+    (run,) = out.iterdir()
+    result = read_result(run)
+    assert result is not None and result.termination == "budget"
+
+
+def test_an_unknown_loop_names_those_there_are() -> None:
+    from adamo_vh.adapters.inspect.tasks import paper
+    from adamo_vh.errors import ConfigError
+
+    with pytest.raises(ConfigError, match="Use one of adamo, inspect"):
+        paper(loop="mine")

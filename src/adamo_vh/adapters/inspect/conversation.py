@@ -82,10 +82,19 @@ def _answer(message: AIMessage) -> Any:
 
 
 def _contents(parts: Sequence[Part]) -> str | list[Content]:
-    from inspect_ai.model import ContentImage, ContentText
-
     if len(parts) == 1 and isinstance(parts[0], TextPart):
         return parts[0].text
+    return parts_of(parts)
+
+
+def parts_of(parts: Sequence[Part]) -> list[Content]:
+    """Texts and pictures as Inspect has them.
+
+    Args:
+        parts: In order.
+    """
+    from inspect_ai.model import ContentImage, ContentText
+
     return [
         ContentImage(image=_data_url(part))
         if isinstance(part, ImagePart)

@@ -18,15 +18,19 @@ from inspect_ai import Epochs, Task, task
 from inspect_ai.dataset import MemoryDataset, Sample
 from inspect_ai.model import ChatMessage, ModelOutput, get_model
 from inspect_ai.scorer import Score, Scorer, Target, mean, scorer, stderr
-from inspect_ai.solver import Generate, Solver, TaskState, solver
+from inspect_ai.solver import Generate, Solver, TaskState, generate, solver
+from inspect_ai.tool import Tool
+from inspect_ai.util import store
 
 from adamo_vh.adapters.exports.dialogue import dialogue
 from adamo_vh.adapters.exports.recorded import recorded
 from adamo_vh.adapters.inspect.conversation import chat
-from adamo_vh.adapters.inspect.mind import InspectMind, decoding
+from adamo_vh.adapters.inspect.mind import NAME, InspectMind, decoding
 from adamo_vh.adapters.inspect.scoring import score_of
+from adamo_vh.adapters.inspect.seat import Seat
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import EpisodeResult
+from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import Sampling
 from adamo_vh.record.run_folder import reserve
 from adamo_vh.session.session import Session
@@ -37,6 +41,10 @@ from adamo_vh.study.workplace import process_engines
 _ANY_MODEL = "random"
 """Stands for the model in the plan, which Inspect names."""
 _SCORE = "adamo_vh_score"
+_SEAT = "adamo_vh_seat"
+_LOOPS = ("adamo", "inspect")
+_SEATS: dict[str, Seat] = {}
+"""Bodies that agents of Inspect drive now, by sample."""
 _Words = str | Sequence[str] | None
 
 
@@ -51,6 +59,7 @@ def study(
     repetitions: int | None = None,
     resolution: str | None = None,
     out: str | None = None,
+    loop: str = "adamo",
 ) -> Task:
     """Any study: a TOML file, one of the paper's by name, or what the other parameters say.
 
@@ -64,6 +73,8 @@ def study(
         repetitions: Epochs; those of the study by default.
         resolution: Size of the frames, WIDTHxHEIGHT.
         out: Folder that keeps the run folders; none is kept without.
+        loop: "adamo": our session asks the model, with our memory. "inspect": Inspect's own loop,
+            or a solver or agent of yours, drives the body with our tools.
     """
     given = {
         "tasks": _words(tasks),
@@ -75,7 +86,9 @@ def study(
         "resolution": resolution,
     }
     options = {name: value for name, value in given.items() if value is not None}
-    return _task(file, {**options, "models": [_ANY_MODEL]}, out)
+    if loop not in _LOOPS:
+        raise ConfigError(f"There is no loop {loop!r}. Use one of {', '.join(_LOOPS)}.")
+    return _task(file, {**options, "models": [_ANY_MODEL]}, out, loop)
 
 
 def _named(name: str) -> Any:
@@ -88,9 +101,10 @@ def _named(name: str) -> Any:
         repetitions: int | None = None,
         resolution: str | None = None,
         out: str | None = None,
+        loop: str = "adamo",
     ) -> Task:
         return study(
-            name, tasks, scene, labeling, profile, variations, repetitions, resolution, out
+            name, tasks, scene, labeling, profile, variations, repetitions, resolution, out, loop
         )
 
     made.__doc__ = f"The paper's study {name!r}; the parameters replace what it says."
@@ -103,7 +117,7 @@ paper, memory, sampling, points, resolution = map(
 )
 
 
-def _task(file: str | None, options: dict[str, Any], out: str | None) -> Task:
+def _task(file: str | None, options: dict[str, Any], out: str | None, loop: str) -> Task:
     what = read_study(file, options)
     repetitions = what.repetitions
     episodes = {_id(one): one for one in plan(replace(what, repetitions=1))}
@@ -127,7 +141,9 @@ def _task(file: str | None, options: dict[str, Any], out: str | None) -> Task:
     usual = next(iter(varied)) if len(varied) == 1 else None
     return Task(
         dataset=MemoryDataset(samples, name=what.name or "study"),
-        solver=body(episodes, samples=usual is None, out=out),
+        setup=seated(episodes, out=out) if loop == "inspect" else None,
+        solver=generate() if loop == "inspect" else body(episodes, samples=usual is None, out=out),
+        cleanup=_leave,
         scorer=episode(),
         epochs=Epochs(repetitions, "mean"),
         config=decoding(usual or Sampling()),
@@ -159,13 +175,10 @@ def body(episodes: dict[str, Planned], *, samples: bool, out: str | None) -> Sol
     """
 
     async def solve(state: TaskState, generate: Generate) -> TaskState:
-        planned = episodes[str(state.sample_id)]
-        seed = seed_of(f"{state.sample_id}/e{state.epoch:02d}")
-        config = replace(planned.config, seed=seed)
+        config = _config(episodes, state)
         mind = InspectMind(get_model(), samples=samples)
         with TemporaryDirectory(prefix="adamo-vh-") as room:
-            name = f"{state.sample_id}-e{state.epoch:02d}".replace("/", "-")
-            folder = reserve(Path(out), name) if out else Path(room) / name
+            folder = _folder(out, state) or Path(room) / "run"
             play = partial(_played, config, mind, folder)
             result, state.messages = await to_thread.run_sync(play)
         if mind.fault is not None:
@@ -180,6 +193,58 @@ def body(episodes: dict[str, Planned], *, samples: bool, out: str | None) -> Sol
         return state
 
     return solve
+
+
+@solver
+def seated(episodes: dict[str, Planned], *, out: str | None) -> Solver:
+    """The body in its room, waiting for the calls of whatever agent follows.
+
+    Args:
+        episodes: By the ids of the samples.
+        out: Folder that keeps the run folders.
+    """
+
+    async def solve(state: TaskState, generate: Generate) -> TaskState:
+        begin = partial(
+            Seat, _config(episodes, state), _folder(out, state), f"{NAME}:{state.model}"
+        )
+        seat = _SEATS[state.uuid] = await to_thread.run_sync(begin)
+        state.store.set(_SEAT, state.uuid)
+        state.messages = await to_thread.run_sync(seat.opening)
+        state.tools = seat.tools()
+        return state
+
+    return solve
+
+
+class BodyTools:
+    """The tools of the sample's body, for an agent that is given its own: `react(tools=[...])`."""
+
+    async def tools(self) -> list[Tool]:
+        """As Inspect asks a source of tools.
+
+        Raises:
+            ConfigError: No body waits for calls.
+        """
+        seat = _SEATS.get(str(store().get(_SEAT)))
+        if seat is None:
+            raise ConfigError("No body waits for calls: give the task loop=inspect.")
+        return seat.tools()
+
+
+async def _leave(state: TaskState) -> None:
+    if (seat := _SEATS.pop(state.uuid, None)) is not None:
+        await to_thread.run_sync(seat.close)
+
+
+def _config(episodes: dict[str, Planned], state: TaskState) -> EpisodeConfig:
+    seed = seed_of(f"{state.sample_id}/e{state.epoch:02d}")
+    return replace(episodes[str(state.sample_id)].config, seed=seed)
+
+
+def _folder(out: str | None, state: TaskState) -> Path | None:
+    name = f"{state.sample_id}-e{state.epoch:02d}".replace("/", "-")
+    return reserve(Path(out), name) if out else None
 
 
 def _played(
@@ -201,6 +266,8 @@ def episode() -> Scorer:
     """Completion and strict success from the simulator's truth; no model judges anything."""
 
     async def score(state: TaskState, target: Target) -> Score:
+        if (seat := _SEATS.get(state.uuid)) is not None:
+            return score_of(await to_thread.run_sync(seat.finish, state.output))
         kept = state.store.get(_SCORE)
         return score_of(None) if kept is None else Score.model_validate(kept)
 
