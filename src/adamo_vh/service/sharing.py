@@ -29,14 +29,14 @@ class Engines:
         self,
         most: int = 4,
         ready: Mapping[Place, Lender] | None = None,
-        make: Make = create_engine,
+        make: Make | None = None,
     ) -> None:
         """Start with none.
 
         Args:
             most: So many are open at once.
             ready: Open already, by their place; never closed here.
-            make: Makes the world of a scene, a figure and a variation.
+            make: Makes the world of a scene, a figure and a variation; the built-in one by default.
         """
         self._make = make
         self._most = most
@@ -59,7 +59,7 @@ class Engines:
                 # One that dialled in may have gone: those in it are broken, and others go on.
                 self._made.pop(place, None)
                 self._make_room()
-                lender = self._made[place] = Lender(self._make(*place))
+                lender = self._made[place] = Lender((self._make or create_engine)(*place))
             self._players[place] += 1
             return lender
 
