@@ -45,6 +45,9 @@ def serve(
         float, typer.Option(help="Seconds after which an unused session is closed.", min=1)
     ] = 900.0,
     max_steps: Annotated[int, typer.Option(help="Step cap of an episode.")] = 60,
+    max_seconds: Annotated[
+        float, typer.Option(help="Time cap of an episode; the player's time counts.")
+    ] = 600.0,
     out: Annotated[
         Path | None, typer.Option(help="Where run folders go; a new folder below runs/ by default.")
     ] = None,
@@ -68,5 +71,5 @@ def serve(
         resolution=resolution,
         most_sessions=sessions,
         idle_s=idle,
-        limits=Limits(max_steps=max_steps),
+        limits=Limits(max_steps=max_steps, max_seconds=max_seconds),
     )
