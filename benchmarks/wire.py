@@ -20,6 +20,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import httpx
+from anyio.from_thread import start_blocking_portal
+from mcp import Client
 from websockets.sync.client import connect
 
 import adamo_vh
@@ -99,7 +101,27 @@ def by_client(url: str) -> Iterator[Ask]:
         yield ask
 
 
-FACES = {"http": over_http, "websocket": over_websocket, "client": by_client}
+@contextmanager
+def over_mcp(url: str) -> Iterator[Ask]:
+    """One call of a tool of the official client; the picture comes in its result."""
+    with start_blocking_portal() as portal, ExitStack() as stack:
+        client = stack.enter_context(portal.wrap_async_context_manager(Client(f"{url}/mcp")))
+
+        def call(tool: str, given: Mapping[str, Any]) -> Any:
+            return portal.call(client.call_tool, tool, dict(given)).content
+
+        told = call("new_episode", {"instruction": "Look around."})[0].text
+        episode = told.partition("id of your episode is ")[2].partition(". ")[0]
+
+        def ask(point: Mapping[str, Any] | None) -> None:
+            name, given = ("observe", {}) if point is None else ("Look", point)
+            kinds = {block.type for block in call(name, {"episode": episode, **given})}
+            assert kinds == {"text", "image", "resource_link"}
+
+        yield ask
+
+
+FACES = {"http": over_http, "websocket": over_websocket, "client": by_client, "mcp": over_mcp}
 """Every face that is timed, by its name; a further one is one line."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -167,6 +168,7 @@ _FINISH = ToolSchema(
 )
 
 
+@cache
 def _new_episode() -> ToolSchema:
     tasks = [task.id for task in builtin_tasks()]
     whole = {"type": "integer", "minimum": 0}

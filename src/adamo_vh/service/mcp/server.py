@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from typing import Any, TypeVar
 
@@ -44,6 +44,7 @@ def create_server(episodes: Episodes, watch: Watch = lambda line: None) -> Serve
         version=version("adamo-vh"),
         title="ADAMO",
         instructions=render("server", episode=episodes.fixed, finish=episodes.offer.finish),
+        get_tool_input_schema=face.schemas.get,
         on_list_tools=face.list_tools,
         on_call_tool=face.call_tool,
         on_list_prompts=face.list_prompts,
@@ -65,6 +66,9 @@ class _Face:
         self._episodes = episodes
         self._watch = watch
         self._threads = anyio.CapacityLimiter(_THREADS)
+        self._tools = episodes.offer.tools()
+        self.schemas: Mapping[str, Mapping[str, Any]] = {t.name: t.parameters for t in self._tools}
+        """The arguments of each tool; asked for at every call."""
 
     async def list_tools(
         self, context: Context, params: types.PaginatedRequestParams | None
@@ -81,7 +85,7 @@ class _Face:
                         read_only_hint=tool.name in free, open_world_hint=False
                     ),
                 )
-                for tool in self._episodes.offer.tools()
+                for tool in self._tools
             ]
         )
 
