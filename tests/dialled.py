@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from adamo_vh.abilities import Abilities
@@ -39,9 +40,11 @@ def with_body(engine: Any, **replaced: Any) -> Any:
 
 
 @contextmanager
-def open_door(answer_s: float = 20.0, token: str = "") -> Iterator[tuple[EngineDoor, str]]:
+def open_door(
+    answer_s: float = 20.0, token: str = "", page: Path | None = None
+) -> Iterator[tuple[EngineDoor, str]]:
     """A door on a free port, and its address."""
-    door, opened = EngineDoor(answer_s), listen("127.0.0.1", 0)
+    door, opened = EngineDoor(answer_s, page=page), listen("127.0.0.1", 0)
     rules = Rules(1000, token=token, rate=Rate(per_s=0), max_message_bytes=64_000_000)
     with opened, running(Edge(door, rules), opened, "door", max_message_bytes=64_000_000):
         yield door, f"ws://127.0.0.1:{opened.getsockname()[1]}/engine"

@@ -9,13 +9,14 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from adamo_vh.errors import EngineError
 from adamo_vh.service.engines.line import ANSWER_S, EngineLine
+from adamo_vh.service.engines.page import offer
 from adamo_vh.service.engines.reading import read_hello, shown
-from adamo_vh.serving.admission import Refusal
-from adamo_vh.serving.edge import Message, Receive, Send, refusal_body
+from adamo_vh.serving.edge import Message, Receive, Send
 
 PATH = "/engine"
 MOST_ENGINES = 16
@@ -30,14 +31,21 @@ _REASON = 110
 class EngineDoor:
     """Takes engines in, and hands them out to those who need a world."""
 
-    def __init__(self, answer_s: float = ANSWER_S, arrived: Callable[[str], None] | None = None):
+    def __init__(
+        self,
+        answer_s: float = ANSWER_S,
+        arrived: Callable[[str], None] | None = None,
+        page: Path | None = None,
+    ) -> None:
         """Open the door.
 
         Args:
             answer_s: How long an engine may take for an answer, seconds.
             arrived: Is told the name of each engine that came in.
+            page: Folder with a page that is an engine; None if none is offered.
         """
         self._answer_s = answer_s
+        self._page = page
         self._arrived = arrived or (lambda name: None)
         self._idle: deque[EngineLine] = deque()
         self._inside = 0
@@ -46,10 +54,7 @@ class EngineDoor:
     async def __call__(self, scope: Any, receive: Receive, send: Send) -> None:
         """Carry one engine's WebSocket until either side ends it."""
         if scope["type"] != "websocket":
-            refusal = Refusal(404, f"Nothing is here but the WebSocket {PATH}, for engines.")
-            head = [(b"content-type", b"application/json")]
-            await send({"type": "http.response.start", "status": refusal.status, "headers": head})
-            await send({"type": "http.response.body", "body": refusal_body(refusal)})
+            await offer(scope, send, self._page)
             return
         await receive()
         if self._inside >= MOST_ENGINES:

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from adamo_vh.service.engines.door import PATH, EngineDoor
 from adamo_vh.service.engines.line import ANSWER_S
+from adamo_vh.service.engines.page import PAGE, page_folder
 from adamo_vh.service.engines.reading import MAX_BINARY
 from adamo_vh.service.engines.remote import RemoteWorld
 from adamo_vh.serving.admission import Rules
@@ -43,17 +44,20 @@ def dialled_in(
         tell: Is told the address, and who came.
 
     Raises:
-        ConfigError: The port is taken.
+        ConfigError: The port is taken, or the page is missing.
         EngineError: No engine dialled in, or it failed, or does not have the scene.
     """
-    opened = listen("127.0.0.1", port)
     token = os.environ.get(TOKEN, "")
     # An engine only answers what it is asked: that is its rate.
     rules = Rules(1000, token=token, rate=Rate(per_s=0), max_message_bytes=MAX_BINARY)
-    door = EngineDoor(answer_s)
+    page = page_folder(os.environ.get(PAGE, ""))
+    opened = listen("127.0.0.1", port)
+    door = EngineDoor(answer_s, page=page)
     with opened, running(Edge(door, rules), opened, "adamo-engines", max_message_bytes=MAX_BINARY):
         address = f"ws://127.0.0.1:{opened.getsockname()[1]}{PATH}"
         tell(f"waiting for an engine at {address}{' (with the token)' if token else ''}")
+        if page is not None:
+            tell(f"or open {address.replace('ws:', 'http:').removesuffix(PATH)} in a browser")
         line = door.take(wait_s)
         tell(f"{line.name} dialled in")
         for sentence in line.hello.abilities.lacking():
