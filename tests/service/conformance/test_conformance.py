@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from adamo_vh.cli.app import app
 from adamo_vh.engine import BodyReport
 from adamo_vh.errors import ConfigError, EngineError
 from adamo_vh.observation import Percept
+from adamo_vh.report.templating import csp_hash
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.service.conformance import CHECKS, Verdict, conform, engine_faults
 from adamo_vh.service.conformance.page import as_json, page, summary
@@ -111,6 +113,8 @@ def test_the_page_shows_everything_and_trusts_nothing(engine: BuiltinEngine) -> 
     html = page(report)
     assert "<script>" not in html and "&lt;script&gt;" in html
     assert "scene-extent" in html and "Does not conform: " in html
+    style = html.partition("<style>")[2].partition("</style>")[0]
+    assert csp_hash(style) in unescape(html)
     assert summary(report).startswith("Does not conform: ")
     data = as_json(report)
     assert json.loads(json.dumps(data)) == data
