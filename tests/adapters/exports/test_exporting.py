@@ -107,6 +107,15 @@ def test_of_a_study_the_scored_episodes_are_taken(study: Path, tmp_path: Path) -
     assert "is damaged" in problem
 
 
+def test_an_episode_that_cannot_be_told_is_left_out_and_named(study: Path, tmp_path: Path) -> None:
+    pictures = sorted((study / "episodes").rglob("frames/*"))
+    pictures[0].unlink()
+    done = export([study], "atif", tmp_path / "out")
+    assert (done.episodes, len(done.problems)) == (2, 2)
+    assert any("lacks the picture" in problem for problem in done.problems)
+    assert len(list((tmp_path / "out").rglob("images"))) == 2
+
+
 def test_filters_look_at_the_score(study: Path) -> None:
     assert len(list(recorded([study], Choice(), []))) == 3
     assert list(recorded([study], Choice(strict_only=True), [])) == []

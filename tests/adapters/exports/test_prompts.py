@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from tests.adapters.exports.runs import SMALL, run
+from tests.cognition.test_lean_agent import Player, finish, noted, says
 from tests.run_folder import played
 from tests.session.test_lean_resume import SAID, Live
 
 import adamo_vh
+from adamo_vh.action import ToolSchema
 from adamo_vh.adapters.exports.prompts import prompts
 from adamo_vh.adapters.exports.recorded import recorded
 from adamo_vh.errors import RecordError
+from adamo_vh.inference.messages import Message
+from adamo_vh.inference.model import Reply, Sampling
 from adamo_vh.record.run_folder import EVENTS, RESULT
 from adamo_vh.session.lending import LentWorld
 
@@ -33,6 +38,32 @@ def test_doubts_refusals_and_close_ups_come_again(lent: LentWorld, tmp_path: Pat
     )
     (episode,) = recorded([tmp_path])
     assert len(prompts(episode)) == len(SAID)
+
+
+class Heard(Player):
+    """Says what it is given, and keeps what it was asked."""
+
+    def __init__(self, said: Sequence[Reply]) -> None:
+        super().__init__(said)
+        self.heard: list[tuple[Message, ...]] = []
+
+    def complete(
+        self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
+    ) -> Reply:
+        self.heard.append(tuple(messages))
+        return super().complete(messages, tools, sampling)
+
+
+def test_a_view_behind_a_doubted_pick_belongs_to_what_was_done_before_it(
+    lent: LentWorld, tmp_path: Path
+) -> None:
+    walk = noted("Walk", x=1.0, y=1.0, z=0.0)
+    player = Heard([says(walk, noted("Pick", 0.2, object="Plate_57")), finish()])
+    adamo_vh.run_episode(
+        "Take the plate.", model=player, engine=lent, profile="lean", resolution=SMALL, out=tmp_path
+    )
+    (episode,) = recorded([tmp_path])
+    assert [prompt.messages for prompt in prompts(episode)] == player.heard
 
 
 def test_a_conversation_has_one_memory(lent: LentWorld, tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 from adamo_vh.adapters.exports.chat import chat_tools
@@ -17,6 +18,7 @@ from adamo_vh.adapters.exports.form import Form
 from adamo_vh.adapters.exports.pictures import PictureFiles
 from adamo_vh.adapters.exports.recorded import Episode
 from adamo_vh.cognition.turns import offered
+from adamo_vh.errors import RecordError
 from adamo_vh.files import write_whole
 from adamo_vh.inference.messages import ToolCall
 from adamo_vh.inference.model import Reply
@@ -50,9 +52,15 @@ def write_atif(episodes: Iterable[Episode], folder: Path, form: Form) -> int:
     count = 0
     for episode in episodes:
         place = folder / episode.name
-        told = trajectory(episode, PictureFiles(place))
-        write_whole(place / TRAJECTORY, json.dumps(told, ensure_ascii=False, indent=1).encode())
-        count += 1
+        with episode.tolerated():
+            try:
+                told = trajectory(episode, PictureFiles(place))
+            except RecordError:
+                rmtree(place, ignore_errors=True)
+                raise
+            text = json.dumps(told, ensure_ascii=False, indent=1)
+            write_whole(place / TRAJECTORY, text.encode())
+            count += 1
     return count
 
 

@@ -58,14 +58,15 @@ def write_inspect(episodes: Iterable[Episode], folder: Path, form: Form) -> int:
     logs: dict[str, _Log] = {}
     count = 0
     for episode in episodes:
-        log = logs.setdefault(title := _title(episode), _Log(title))
-        log.first = log.first or episode
-        messages = dialogue(episode)
-        log.samples.append(_sample(episode, messages))
-        log.bytes += sum(len(p.data) for message in messages for p in pictures_of(message))
+        with episode.tolerated():
+            messages = dialogue(episode)
+            log = logs.setdefault(title := _title(episode), _Log(title))
+            log.first = log.first or episode
+            log.samples.append(_sample(episode, messages))
+            log.bytes += sum(len(p.data) for message in messages for p in pictures_of(message))
+            count += 1
         if sum(one.bytes for one in logs.values()) > _MOST_BYTES:
             _write(max(logs.values(), key=lambda one: one.bytes), folder)
-        count += 1
     for log in logs.values():
         _write(log, folder)
     return count

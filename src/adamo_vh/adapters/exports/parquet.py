@@ -107,9 +107,10 @@ def write_parquet(episodes: Iterable[Episode], folder: Path, form: Form) -> int:
     count = 0
     with _Table("turns", folder) as rows, _Table("episodes", folder) as heads:
         for episode in episodes:
-            rows.add(list(_turns(episode)))
-            heads.add([_episode(episode)])
-            count += 1
+            with episode.tolerated():
+                rows.add(list(_turns(episode)))
+                heads.add([_episode(episode)])
+                count += 1
     write_whole(folder / CARD, _CARD.encode())
     return count
 

@@ -12,8 +12,9 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from adamo_vh.action import Action, ToolSchema
+from adamo_vh.action import Action, Outcome, ToolSchema
 from adamo_vh.action_server import ActionResult, Sighting
+from adamo_vh.action_server.local import PAPER_REFRESH
 from adamo_vh.adapters.exports.recorded import Episode
 from adamo_vh.cognition.agent import Agent, AgentConfig
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
@@ -158,14 +159,17 @@ class _Body:
         while self._ahead and isinstance(self._ahead[0], Shown):
             pictures.append(self._picture(self._ahead.popleft()))
         self._hash = act.state_hash
-        view = self._view() if self._ahead and isinstance(self._ahead[0], Observed) else None
+        # As the server's own rule is; any other view was asked for, and is given when it is again.
+        grants = act.name in PAPER_REFRESH and act.feedback.outcome is not Outcome.REFUSED
+        view = self._view() if grants else None
         return ActionResult(act.feedback, act.agent, view, self._hash, "", tuple(pictures))
 
     def _view(self) -> Observation:
         if not self._ahead:
             raise _NoMoreError
         seen = self._ahead.popleft()
-        assert isinstance(seen, Observed)
+        if not isinstance(seen, Observed):
+            raise _NoMoreError  # The record stops, or was written by another rule.
         frame, agent = self._picture(seen), seen.agent
         size = (frame.width_px, frame.height_px)
         camera = Camera.towards(agent.eyes, agent.gaze, _FOV_Y_RAD, size)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from adamo_vh.analysis.outcome import Outcome
@@ -31,6 +32,22 @@ class Episode:
     trajectory: Trajectory
     result: EpisodeResult | None
     """What came of it; None if it did not get that far."""
+    problems: list[str] | None = None
+    """Takes what is wrong with it, if it may be left out; None if that ends the export."""
+
+    @contextmanager
+    def tolerated(self) -> Iterator[None]:
+        """Leave the episode out if its record turns out to be damaged, where it may be.
+
+        Raises:
+            RecordError: It may not.
+        """
+        try:
+            yield
+        except RecordError as error:
+            if self.problems is None:
+                raise
+            self.problems.append(str(error))
 
     @property
     def completion(self) -> float | None:
@@ -105,18 +122,19 @@ def recorded(
     for folder in folders:
         found = _of_study if is_study(folder) else _of_run
         for name, run in found(folder, chosen, problems if problems is not None else []):
+            lenient = problems if is_study(folder) else None
             try:
-                episode = _read(name, run)
+                episode = _read(name, run, lenient)
             except AdamoError as error:
-                if not is_study(folder) or problems is None:
+                if lenient is None:
                     raise
-                problems.append(str(error))
+                lenient.append(str(error))
                 continue
             if not chosen.takes(episode.completion, episode.strict):
                 continue
             # Two folders of the same name stay two episodes.
             count = names[name] = names.get(name, 0) + 1
-            yield episode if count == 1 else _read(f"{name}-{count}", run)
+            yield episode if count == 1 else replace(episode, name=f"{name}-{count}")
 
 
 def _of_run(folder: Path, choice: Choice, problems: list[str]) -> Iterator[tuple[str, Path]]:
@@ -135,7 +153,6 @@ def _is_wanted(outcome: Outcome, choice: Choice) -> bool:
     return outcome.is_scored and choice.takes(outcome.completion, outcome.strict)
 
 
-def _read(name: str, folder: Path) -> Episode:
-    return Episode(
-        name, folder, read_manifest(folder), read_trajectory(folder), read_result(folder)
-    )
+def _read(name: str, folder: Path, problems: list[str] | None) -> Episode:
+    manifest, trajectory = read_manifest(folder), read_trajectory(folder)
+    return Episode(name, folder, manifest, trajectory, read_result(folder), problems)

@@ -15,6 +15,7 @@ from adamo_vh.adapters.exports.form import Form
 from adamo_vh.adapters.exports.recorded import Episode
 from adamo_vh.adapters.extras import needed
 from adamo_vh.engine import WorldState
+from adamo_vh.errors import RecordError
 from adamo_vh.files import make_folder
 from adamo_vh.geometry import Vec3
 from adamo_vh.observation import AgentState
@@ -52,8 +53,13 @@ def write_rrd(episodes: Iterable[Episode], folder: Path, form: Form) -> int:
     for episode in episodes:
         path = folder / f"{episode.name}.rrd"
         make_folder(path.parent)
-        _write(episode, path)
-        count += 1
+        with episode.tolerated():
+            try:
+                _write(episode, path)
+            except RecordError:
+                path.unlink(missing_ok=True)
+                raise
+            count += 1
     return count
 
 

@@ -40,19 +40,22 @@ def write_sft(episodes: Iterable[Episode], folder: Path, form: Form) -> int:
     count = 0
     with naming("written", folder / TRAIN), (folder / TRAIN).open("w", encoding="utf-8") as file:
         for episode in episodes:
-            for prompt in prompts(episode):
-                if prompt.reply.ending.is_failure:
-                    continue
-                example = _example(prompt, episode, pictures)
-                if form.with_score:
-                    example |= {
-                        "episode": episode.name,
-                        "completion": episode.completion,
-                        "strict": episode.strict,
-                    }
-                file.write(json.dumps(example, ensure_ascii=False) + "\n")
-            count += 1
+            with episode.tolerated():
+                lines = [_line(prompt, episode, pictures, form) for prompt in prompts(episode)]
+                file.writelines(lines)
+                count += 1
     return count
+
+
+def _line(prompt: Prompt, episode: Episode, pictures: Pictures, form: Form) -> str:
+    """An example as its line; nothing for an answer that is not to be learnt."""
+    if prompt.reply.ending.is_failure:
+        return ""
+    example = _example(prompt, episode, pictures)
+    if form.with_score:
+        score = {"completion": episode.completion, "strict": episode.strict}
+        example |= {"episode": episode.name, **score}
+    return json.dumps(example, ensure_ascii=False) + "\n"
 
 
 def _example(prompt: Prompt, episode: Episode, pictures: Pictures) -> dict[str, Any]:
