@@ -43,6 +43,7 @@ func build(data, folder):
 		lamp.shadow_bias = 0.05
 		lamp.light_cull_mask = COLOURS
 		add_child(lamp)
+		lamp.force_update_transform()
 		lights.append(lamp)
 	_colours = _viewport(COLOURS, Color(0.62, 0.74, 0.88), data.ambient)
 	_ids = _viewport(IDS, Color(1, 1, 1), 0.0)
@@ -117,7 +118,10 @@ func put(number, center, q):
 func _put(node, position, q):
 	# w, x, y, z about ADAMO's axes.
 	node.transform = Transform(Basis(Quat(q[1], q[3], -q[2], q[0])), here(position))
+	# Godot tells the renderer at the end of a step; the next picture may be asked for before.
 	node.force_update_transform()
+	for child in node.get_children():
+		child.force_update_transform()
 	PhysicsServer.body_set_state(node.get_rid(), PhysicsServer.BODY_STATE_TRANSFORM, node.global_transform)
 
 func show_thing(number, is_there):
