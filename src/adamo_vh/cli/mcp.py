@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import secrets
 import signal
@@ -51,16 +50,12 @@ def serve(
         server = create_server(episodes, _tell)
         if http is None:
             _tell(f"MCP on the standard streams; {_what(offer)}")
-            serve_stdio(server)
+            serve_stdio(server, episodes.close)
         else:
             with serve_http(server, http, token=token) as url:
                 _tell(f"MCP at {url}; {_what(offer)}")
                 _tell("stop   Ctrl+C")
                 _wait()
-    if http is None:
-        # A thread may still wait for a line of a client that is gone.
-        sys.stderr.flush()
-        os._exit(0)
 
 
 def _offer(out: Path | None, settings: dict[str, Any], most: int, idle_s: float) -> Offer:

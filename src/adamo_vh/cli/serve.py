@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import secrets
 import signal
 import threading
@@ -29,6 +30,7 @@ def serve(
     token: str,
     judge: str,
     hosts: list[str],
+    engine: str = "built-in",
     **terms: Any,
 ) -> None:
     """Serve the body until the process is told to stop; every record is whole then.
@@ -40,18 +42,22 @@ def serve(
         token: What players bring; empty for none.
         judge: What a judge brings; `NEW` to make one up, empty for no judge.
         hosts: Further names under which this machine may be asked.
+        engine: built-in, or remote for those that dial in.
         **terms: What is offered; see `adamo_vh.service.hosting.Terms`.
 
     Raises:
         ConfigError: A setting is wrong, the port is taken, or the extra `serve` is missing.
     """
     try:
-        from adamo_vh.service.app import MAX_BODY_BYTES, serving
+        from adamo_vh.service.app import FACES, MAX_BODY_BYTES, serving
+        from adamo_vh.service.engines.face import dialled_engines, engine_face
     except ImportError as error:
         raise ConfigError(
             f"The service needs an extra package ({error.name}): pip install 'adamo-vh[serve]'."
         ) from None
     from adamo_vh.action_server.wire import Create
+    from adamo_vh.service.engines.door import PATH, EngineDoor
+    from adamo_vh.service.engines.page import PAGE, page_folder
     from adamo_vh.service.hosting import Host, Terms
 
     player_key, judge_key = _key(token, "--token"), _key(judge, "--judge")
@@ -62,11 +68,21 @@ def serve(
     # Set anew because a shell may have told its background jobs to ignore Ctrl+C.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    host = Host(folder, Terms(**terms))
+    faces, engines = FACES, None
+    if is_remote := _is_remote(engine):
+        page = page_folder(os.environ.get(PAGE, ""))
+        door = EngineDoor(arrived=lambda name: say(f"engine  {name} dialled in"), page=page)
+        faces, engines = (*FACES, engine_face(door)), dialled_engines(door)
+    host = Host(folder, Terms(**terms), engines)
     try:
-        with serving(host, address=address, port=port, rules=rules) as url:
-            # A wrong setting is told now, and the first player does not wait for the engine.
-            host.prepare(Create(instruction="Look around."))
+        with serving(host, address=address, port=port, rules=rules, faces=faces) as url:
+            if is_remote:
+                say(f"engines {url.replace('http', 'ws', 1)}{PATH}")
+                if door.page is not None:
+                    say(f"or open {url}/ in a browser")
+            else:
+                # A wrong setting is told now, and the first player does not wait for the engine.
+                host.prepare(Create(instruction="Look around."))
             say(f"serving {url}/v1")
             if token == NEW:
                 say(f"token   {player_key}")
@@ -79,6 +95,17 @@ def serve(
     finally:
         host.close_all()
     say("stopped; every record is whole")
+
+
+def _is_remote(engine: str) -> bool:
+    """Whether engines dial in.
+
+    Raises:
+        ConfigError: There is no such kind of engine.
+    """
+    if engine not in ("built-in", "remote"):
+        raise ConfigError(f"--engine {engine}: use built-in or remote.")
+    return engine == "remote"
 
 
 def _key(told: str, option: str) -> str:

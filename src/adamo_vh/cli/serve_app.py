@@ -15,6 +15,10 @@ def serve(
     scene: Annotated[str, typer.Option(help="Where sessions play that name no scene.")] = "s1",
     labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
     figure: Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")] = "mara",
+    engine: Annotated[
+        str,
+        typer.Option(help="built-in; or remote: engines dial in at /engine (docs/engines.md)."),
+    ] = "built-in",
     profile: Annotated[str, typer.Option(help="Of sessions that name none.")] = "paper",
     resolution: Annotated[str, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = "1920x1080",
     host: Annotated[
@@ -59,6 +63,7 @@ def serve(
         token=token,
         judge=judge,
         hosts=allow_host or [],
+        engine=engine,
         scene=scene,
         labeling=labeling,
         figure=figure,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
+from adamo_vh.engine import World
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import AdamoError
 from adamo_vh.session.bodies import create_engine
@@ -13,6 +14,8 @@ from adamo_vh.session.lending import Lender
 
 Place = tuple[str, str, int]
 """Scene, figure and variation."""
+Make = Callable[[str, str, int], World]
+"""Makes the world of a place."""
 
 
 class BusyError(AdamoError):
@@ -22,13 +25,20 @@ class BusyError(AdamoError):
 class Engines:
     """Makes engines when they are needed, and closes those that nobody plays in."""
 
-    def __init__(self, most: int = 4, ready: Mapping[Place, Lender] | None = None) -> None:
+    def __init__(
+        self,
+        most: int = 4,
+        ready: Mapping[Place, Lender] | None = None,
+        make: Make | None = None,
+    ) -> None:
         """Start with none.
 
         Args:
             most: So many are open at once.
             ready: Open already, by their place; never closed here.
+            make: Makes the world of a scene, a figure and a variation; the built-in one by default.
         """
+        self._make = make
         self._most = most
         self._ready = dict(ready or {})
         self._made: dict[Place, Lender] = {}
@@ -45,9 +55,11 @@ class Engines:
         place = place_of(config)
         with self._lock:
             lender = self._ready.get(place) or self._made.get(place)
-            if lender is None:
+            if lender is None or bool(getattr(lender.world, "fault", "")):
+                # One that dialled in may have gone: those in it are broken, and others go on.
+                self._made.pop(place, None)
                 self._make_room()
-                lender = self._made[place] = Lender(create_engine(*place))
+                lender = self._made[place] = Lender((self._make or create_engine)(*place))
             self._players[place] += 1
             return lender
 

@@ -11,10 +11,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import anyio
+import mcp_types as types
 import pytest
+from mcp import Client
+from tests.service.mcp.shared_engine import engines_of
 from tests.session.test_outside_episodes import CALLS
 from tests.session.test_player_side import assert_blind, texts_in
 
+from adamo_vh.benchmark.tasks import builtin_tasks
 from adamo_vh.episode.result import EpisodeResult, read_result
 from adamo_vh.inference.messages import AIMessage, ToolCall
 from adamo_vh.inference.players.scripted import ScriptedModel
@@ -24,6 +29,8 @@ from adamo_vh.service.mcp.episodes import Episodes
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.service.mcp.server import create_server
 from adamo_vh.service.mcp.transports import serve_http
+from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.outside import ENDED
 from adamo_vh.session.runs import replay_episode, run_episode
 
 PLAYER = [sys.executable, "-m", "tests.service.mcp.player"]
@@ -138,3 +145,37 @@ def test_over_http_and_after_the_first_client_was_killed(
     assert result.warnings == ("outside:second went on with what outside:first had begun.",)
     # Who runs the server is told.
     assert told[-1].startswith(f"{episode}: ended (answered), completion 1.00")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("task", [task.id for task in builtin_tasks()])
+def test_every_task_is_the_same_over_mcp(
+    lent: LentWorld, engine: BuiltinEngine, tmp_path: Path, task: str
+) -> None:
+    """The baseline's calls, made again by a client: equal calls, states and score."""
+    settings: Any = {"resolution": "640x360", "grid": 4}
+    expected = run_episode(
+        task=task, model="baseline", engine=engine, out=tmp_path / "in", **settings
+    )
+    recorded = read_trajectory(tmp_path / "in")
+    offer = Offer({**settings, "task": task}, fixed=tmp_path / "out")
+
+    async def play(episodes: Episodes) -> None:
+        async with Client(create_server(episodes)) as client:
+            for act in recorded.acts:
+                given = {**(act.arguments or {}), "episode": "out"}
+                result = await client.call_tool(act.name, given)
+                assert isinstance(result, types.CallToolResult)
+                heard = result.content[0]
+                assert isinstance(heard, types.TextContent)
+                assert heard.text.startswith(act.feedback.text) or heard.text == ENDED
+            await client.call_tool("finish", {"episode": "out", "answer": expected.answer})
+
+    with Episodes(offer, engines=engines_of(lent)) as episodes:
+        anyio.run(play, episodes)
+    result = read_result(tmp_path / "out")
+    assert result is not None and result.score == expected.score
+    assert result.state_hash == expected.state_hash
+    assert [
+        (a.name, a.arguments, a.state_hash) for a in read_trajectory(tmp_path / "out").acts
+    ] == [(a.name, a.arguments, a.state_hash) for a in recorded.acts]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import json
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
@@ -12,7 +13,9 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from adamo_vh.episode.result import read_result
 from adamo_vh.errors import ConfigError
+from adamo_vh.record.termination import TerminationReason
 from adamo_vh.service.mcp.episodes import Episodes
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.service.mcp.server import create_server
@@ -105,6 +108,33 @@ def test_others_cannot_reach_it() -> None:
         serve_http(create_server(episodes), host="0.0.0.0"),
     ):
         pass
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_what_is_unfinished_is_written_down_when_the_process_is_told_to_end(
+    tmp_path: Path, number: int
+) -> None:
+    command = [sys.executable, "-m", "adamo_vh", "mcp", "--task", "T8", "--resolution", "160x90"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        [*command, "--out", str(tmp_path / "one")], stdin=pipe, stdout=pipe, stderr=pipe
+    ) as process:
+        assert process.stdin is not None and process.stdout is not None
+        call = {"name": "observe", "arguments": {"episode": "one"}}
+        for message in (
+            HELLO,
+            {"jsonrpc": "2.0", "method": "notifications/initialized"},
+            {"jsonrpc": "2.0", "id": 2, "method": "tools/call", "params": call},
+        ):
+            process.stdin.write(json.dumps(message).encode() + b"\n")
+            process.stdin.flush()
+        assert b"adamo-vh" in process.stdout.readline()
+        assert b"Symbolic state" in process.stdout.readline()
+        process.send_signal(number)
+        assert process.wait(30) == 0
+    result = read_result(tmp_path / "one")
+    assert result is not None and result.termination is TerminationReason.BROKEN
 
 
 def test_the_standard_streams_carry_mcp_alone_and_end_with_the_client(tmp_path: Path) -> None:

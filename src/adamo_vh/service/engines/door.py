@@ -45,7 +45,8 @@ class EngineDoor:
             page: Folder with a page that is an engine; None if none is offered.
         """
         self._answer_s = answer_s
-        self._page = page
+        self.page = page
+        """Folder of the page that is offered."""
         self._arrived = arrived or (lambda name: None)
         self._idle: deque[EngineLine] = deque()
         self._inside = 0
@@ -54,7 +55,7 @@ class EngineDoor:
     async def __call__(self, scope: Any, receive: Receive, send: Send) -> None:
         """Carry one engine's WebSocket until either side ends it."""
         if scope["type"] != "websocket":
-            await offer(scope, send, self._page)
+            await offer(scope, send, self.page)
             return
         await receive()
         if self._inside >= MOST_ENGINES:

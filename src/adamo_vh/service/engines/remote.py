@@ -77,6 +77,11 @@ class RemoteWorld:
         return self.line.hello.abilities
 
     @property
+    def fault(self) -> str:
+        """Why nothing can be asked any more; empty if it can."""
+        return self.line.fault
+
+    @property
     def scene(self) -> SceneInfo:
         """Name, origin, extent and areas of the loaded scene."""
         return self._scene

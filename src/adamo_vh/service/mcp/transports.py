@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import socket
-from collections.abc import AsyncIterator, Iterator
+import sys
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from typing import Any
 
 import anyio
+import anyio.to_thread
 from mcp.server import Server
 from mcp.server.stdio import stdio_server
 from mcp.server.streamable_http_manager import StreamableHTTPASGIApp, StreamableHTTPSessionManager
@@ -95,21 +98,25 @@ def serve_socket(server: Server[Any], opened: socket.socket, *, token: str = "")
         yield
 
 
-def serve_stdio(server: Server[Any]) -> None:
-    """Serve the one client at the standard streams, until it hangs up or the process is told to.
+def serve_stdio(server: Server[Any], stop: Callable[[], None]) -> None:
+    """Serve the one client at the standard streams, until it hangs up.
 
     Args:
         server: As of `create_server`.
+        stop: Is called when the process is told to end, and ends all that must be; then it ends.
     """
 
-    async def wait_for_signal(scope: anyio.CancelScope) -> None:
+    async def wait_for_signal() -> None:
         with anyio.open_signal_receiver(signal.SIGTERM, signal.SIGINT) as signals:
             async for _ in signals:
-                scope.cancel()
+                await anyio.to_thread.run_sync(stop)
+                sys.stderr.flush()
+                # The thread that waits for the client's next line hears of nothing else.
+                os._exit(0)
 
     async def main() -> None:
         async with anyio.create_task_group() as group:
-            group.start_soon(wait_for_signal, group.cancel_scope)
+            group.start_soon(wait_for_signal)
             async with stdio_server() as (incoming, outgoing):
                 await server.run(incoming, outgoing, server.create_initialization_options())
             group.cancel_scope.cancel()
