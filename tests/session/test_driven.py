@@ -105,7 +105,7 @@ def test_the_same_calls_make_the_same_episode(
     assert other.model_kind is ModelKind.OUTSIDE and other.completion == 1.0
     assert read_result(tmp_path / "2") == other
     assert verify_run(tmp_path / "2", engine=lent).problems == ()
-    assert "a mind from outside" in (tmp_path / "2" / PAGE).read_text("utf-8")
+    assert "a program from outside" in (tmp_path / "2" / PAGE).read_text("utf-8")
 
 
 def test_an_agent_drives_it_as_any_action_server(lent: LentWorld, tmp_path: Path) -> None:
