@@ -5,6 +5,7 @@ Every fault is a `FileError` whose one line names the file, what is wrong with i
 
 from __future__ import annotations
 
+import base64
 import errno
 import json
 import os
@@ -306,6 +307,11 @@ def _is_deeper(value: Any, levels: int) -> bool:
         return False
     inner = value.values() if isinstance(value, dict) else value
     return levels == 0 or any(_is_deeper(item, levels - 1) for item in inner)
+
+
+def data_url(media_type: str, data: bytes) -> str:
+    """A file as a URL that holds all of it."""
+    return f"data:{media_type};base64,{base64.b64encode(data).decode('ascii')}"
 
 
 def cache_folder() -> Path:

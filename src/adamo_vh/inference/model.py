@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from adamo_vh.action import ToolSchema
 from adamo_vh.inference.messages import AIMessage, Message
 
 if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
     from adamo_vh.inference.remote.capabilities import Capabilities
 
 
@@ -145,6 +148,14 @@ class Reply:
         """Tell what the answer is, where the model did not."""
         if self.ending is None:
             object.__setattr__(self, "ending", _ending(self))
+
+
+@cache
+def reply_codec() -> TypeAdapter[Reply]:
+    """Writes a reply as JSON, and reads it."""
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(Reply)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -197,10 +198,22 @@ def shown(step: int, frame: Frame) -> Shown:
     return Shown(step, frame_name(frame), frame.width_px, frame.height_px)
 
 
+_SUFFIXES = {"image/jpeg": "jpg", "image/png": "png"}
+_FRAME_NAME = re.compile(r"[0-9a-f]{8,64}\.(jpg|png)")
+
+
 def frame_name(frame: Frame) -> str:
     """File name of a picture: the hash of its content."""
-    suffix = {"image/jpeg": "jpg", "image/png": "png"}[frame.media_type]
-    return f"{hashlib.sha256(frame.data).hexdigest()[:24]}.{suffix}"
+    return f"{hashlib.sha256(frame.data).hexdigest()[:24]}.{_SUFFIXES[frame.media_type]}"
+
+
+def frame_type(name: str) -> str:
+    """Media type of a picture by its file name; empty for what is no such name.
+
+    Ask before a name from a record or a client is opened: it must not lead out of the folder.
+    """
+    match = _FRAME_NAME.fullmatch(name)
+    return next((kind for kind, end in _SUFFIXES.items() if match and end == match[1]), "")
 
 
 @cache

@@ -6,7 +6,6 @@ escaped, and the page forbids itself every script but its own.
 
 from __future__ import annotations
 
-import base64
 import os
 import re
 import warnings
@@ -26,10 +25,10 @@ from adamo_vh.episode.result import (
     read_result,
 )
 from adamo_vh.errors import AdamoError, FileError, RecordError
-from adamo_vh.files import write_whole
+from adamo_vh.files import data_url, write_whole
 from adamo_vh.perception import Labeling
 from adamo_vh.record.run_folder import FRAMES
-from adamo_vh.record.trajectory import Ended, Trajectory, read_trajectory
+from adamo_vh.record.trajectory import Ended, Trajectory, frame_type, read_trajectory
 from adamo_vh.report.exchanges import exchanges
 from adamo_vh.report.failure import facts
 from adamo_vh.report.floor_plan import FloorPlan, floor_plan
@@ -41,10 +40,7 @@ from adamo_vh.report.whereabouts import followed
 PAGE = "episode.html"
 """Name of the page in a run folder."""
 
-_FRAME_NAME = re.compile(r"[0-9a-f]{8,64}\.(jpg|png)")
-"""A recorded name must not lead out of the folder: what it names is put into the page."""
 _T = TypeVar("_T")
-_MEDIA_TYPE = {"jpg": "image/jpeg", "png": "image/png"}
 
 
 def write_page(folder: Path) -> Path:
@@ -213,29 +209,25 @@ def _naming(manifest: Manifest) -> Callable[[str], str]:
 
 
 def _data_url(name: str, frames: Callable[[str], bytes]) -> str | None:
-    match = _FRAME_NAME.fullmatch(name)
-    if match is None:
+    kind = frame_type(name)
+    if not kind:
         return None
     try:
         data = frames(name)
     except (OSError, LookupError):
         return None
-    return _inlined(_MEDIA_TYPE[match[1]], data)
+    return data_url(kind, data)
 
 
 def _jpeg_url(data: bytes) -> str:
-    return _inlined("image/jpeg", data)
-
-
-def _inlined(media_type: str, data: bytes) -> str:
-    return f"data:{media_type};base64,{base64.b64encode(data).decode('ascii')}"
+    return data_url("image/jpeg", data)
 
 
 def _checked(frames: Callable[[str], bytes]) -> Callable[[str], bytes]:
     """The same pictures; a name that is none of a picture names nothing."""
 
     def frame(name: str) -> bytes:
-        if _FRAME_NAME.fullmatch(name) is None:
+        if not frame_type(name):
             raise LookupError(name)
         return frames(name)
 

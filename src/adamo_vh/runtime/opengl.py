@@ -22,8 +22,8 @@ GEQUAL = 0x0206
 SRC_ALPHA, ONE_MINUS_SRC_ALPHA = 0x0302, 0x0303
 NONE, FRONT, COLOR_ATTACHMENT0, DEPTH_ATTACHMENT = 0, 0x0404, 0x8CE0, 0x8D00
 CCW = 0x0901
-CULL_FACE, DEPTH_TEST, NORMALIZE, BLEND = 0x0B44, 0x0B71, 0x0BA1, 0x0BE2
-LIGHTING, FOG, ALPHA_TEST, COLOR_MATERIAL = 0x0B50, 0x0B60, 0x0BC0, 0x0B57
+CULL_FACE, DEPTH_TEST, BLEND = 0x0B44, 0x0B71, 0x0BE2
+LIGHTING, FOG, ALPHA_TEST = 0x0B50, 0x0B60, 0x0BC0
 SCISSOR_TEST, STENCIL_TEST, MULTISAMPLE = 0x0C11, 0x0B90, 0x809D
 POLYGON_OFFSET_FILL = 0x8037
 TEXTURE_2D, TEXTURE0, TEXTURE1 = 0x0DE1, 0x84C0, 0x84C1
@@ -36,7 +36,6 @@ MODELVIEW, PROJECTION = 0x1700, 0x1701
 RED, R8, RGB, RGB8 = 0x1903, 0x8229, 0x1907, 0x8051
 UNPACK_ALIGNMENT, GENERATE_MIPMAP = 0x0CF5, 0x8191
 DEPTH_COMPONENT, RGBA, RGBA8, DEPTH_COMPONENT32F = 0x1902, 0x1908, 0x8058, 0x8CAC
-MODELVIEW_MATRIX, PROJECTION_MATRIX = 0x0BA6, 0x0BA7
 NEAREST, LINEAR = 0x2600, 0x2601
 TEXTURE_MAG_FILTER, TEXTURE_MIN_FILTER = 0x2800, 0x2801
 TEXTURE_WRAP_S, TEXTURE_WRAP_T, CLAMP_TO_EDGE = 0x2802, 0x2803, 0x812F
@@ -101,11 +100,6 @@ def made(kind: str, count: int = 1) -> tuple[int, ...]:
     names = np.zeros(count, np.uint32)
     call(f"Gen{kind}", "ip")(count, address(names))
     return tuple(int(name) for name in names)
-
-
-def deleted(kind: str, *names: int) -> None:
-    """Free objects of a kind."""
-    call(f"Delete{kind}", "ip")(len(names), address(np.array(names, np.uint32)))
 
 
 def program(vertex: str, fragment: str) -> int:

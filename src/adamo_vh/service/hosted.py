@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-import re
 import threading
 import time
 from collections.abc import Sequence
 from dataclasses import asdict
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
 from adamo_vh.action_server.wire import (
     Act,
@@ -36,17 +34,16 @@ from adamo_vh.action_server.wire import (
 )
 from adamo_vh.episode.result import EpisodeResult
 from adamo_vh.errors import ConfigError
-from adamo_vh.inference.model import Reply
+from adamo_vh.inference.model import Reply, reply_codec
 from adamo_vh.observation import Frame, Observation
 from adamo_vh.readable import encodable
 from adamo_vh.record.run_folder import FRAMES
 from adamo_vh.record.termination import TerminationReason
-from adamo_vh.record.trajectory import frame_name
+from adamo_vh.record.trajectory import frame_name, frame_type
 from adamo_vh.service.watching import Watch
 from adamo_vh.session.driven import DrivenBody
 
 _MOST = 1e12
-_FRAME = re.compile(r"[0-9a-f]{8,64}\.(?:jpg|png)")
 
 
 class Hosted:
@@ -180,7 +177,7 @@ class Hosted:
     def frame(self, name: str) -> bytes | None:
         """A picture that was shown in this session, by its name; None if there is none."""
         self.touched = time.monotonic()
-        if _FRAME.fullmatch(name) is None:
+        if not frame_type(name):
             return None
         try:
             return (self.folder / FRAMES / name).read_bytes()
@@ -218,14 +215,9 @@ class Hosted:
         self.watch.close()
 
 
-@cache
-def _replies() -> TypeAdapter[Reply]:
-    return TypeAdapter(Reply)
-
-
 def _reply(told: dict[str, Any]) -> Reply:
     try:
-        reply = _replies().validate_python(told)
+        reply = reply_codec().validate_python(told)
     except (ValidationError, RecursionError) as error:
         what = fault_in(error) if isinstance(error, ValidationError) else "It is too deep."
         raise ConfigError(f"The reply cannot be read: {what}") from None

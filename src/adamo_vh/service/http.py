@@ -30,6 +30,7 @@ from adamo_vh.action_server.wire import (
 from adamo_vh.engine import WorldState
 from adamo_vh.episode.result import EpisodeResult, read_result
 from adamo_vh.errors import RecordError
+from adamo_vh.record.trajectory import frame_type
 from adamo_vh.service.about import About, Playing, Scored
 from adamo_vh.service.hosting import Host, NoSessionError
 from adamo_vh.service.problems import JudgeOnlyError
@@ -116,10 +117,9 @@ def _steps(host: Host) -> APIRouter:
         data = await asyncio.to_thread(lambda: host.find(session).frame(name))
         if data is None:
             raise NoSessionError("There is no such picture in this session.")
-        kind = "image/png" if name.endswith("png") else "image/jpeg"
         # Its name is the hash of its content.
         kept = {"cache-control": "private, max-age=31536000, immutable"}
-        return Response(data, media_type=kind, headers=kept)
+        return Response(data, media_type=frame_type(name), headers=kept)
 
     @router.post("/act", response_model=Done)
     async def act(session: SessionId, step: Act) -> Response:

@@ -12,7 +12,16 @@ from typing import Any
 
 from adamo_vh.action_server.wire import Picture
 from adamo_vh.observation import Frame
-from adamo_vh.record.trajectory import Acted, Ended, Event, Observed, Shown, Started, Thought
+from adamo_vh.record.trajectory import (
+    Acted,
+    Ended,
+    Event,
+    Observed,
+    Shown,
+    Started,
+    Thought,
+    frame_type,
+)
 
 _KEPT = 1_000
 _MOST_WATCHERS = 32
@@ -86,7 +95,7 @@ class Watch:
                     "step": event.step,
                     "picture": Picture(
                         event.frame,
-                        "image/png" if event.frame.endswith("png") else "image/jpeg",
+                        frame_type(event.frame),
                         event.width_px,
                         event.height_px,
                         self._href(event.frame),

@@ -6,7 +6,7 @@ it is sent. Either keeps memory and a connection.
 
 from __future__ import annotations
 
-from asyncio import TimerHandle
+from asyncio import Protocol, TimerHandle
 from typing import Any
 
 import h11
@@ -19,11 +19,33 @@ UNREAD_S = 20.0
 """So long a client may leave unread what it is sent."""
 
 
-class PromptHttp(H11Protocol):
+class _DropsWhoDoesNotRead(Protocol):
+    """What both kinds of connection do with a client that leaves unread what it is sent."""
+
+    loop: Any
+    transport: Any
+    _unread: TimerHandle | None = None
+
+    def pause_writing(self) -> None:
+        """Wait for the client to read, but not for ever."""
+        super().pause_writing()
+        self._unread = self.loop.call_later(UNREAD_S, self.transport.abort)
+
+    def resume_writing(self) -> None:
+        """Go on: it has read."""
+        super().resume_writing()
+        _cancel(self._unread)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Wait for nothing any more."""
+        _cancel(self._unread)
+        super().connection_lost(exc)
+
+
+class PromptHttp(_DropsWhoDoesNotRead, H11Protocol):
     """HTTP/1.1 that drops a client which is too slow."""
 
     _head: TimerHandle | None = None
-    _unread: TimerHandle | None = None
 
     def connection_made(self, transport: Any) -> None:
         """Wait for the head of a request."""
@@ -40,42 +62,14 @@ class PromptHttp(H11Protocol):
         elif self._head is None and in_head and self.conn.trailing_data[0]:
             self._head = self.loop.call_later(HEAD_S, self.transport.abort)
 
-    def pause_writing(self) -> None:
-        """Wait for the client to read, but not for ever."""
-        super().pause_writing()
-        self._unread = self.loop.call_later(UNREAD_S, self.transport.abort)
-
-    def resume_writing(self) -> None:
-        """Go on: it has read."""
-        super().resume_writing()
-        _cancel(self._unread)
-
     def connection_lost(self, exc: Exception | None) -> None:
         """Wait for nothing any more."""
         _cancel(self._head)
-        _cancel(self._unread)
         super().connection_lost(exc)
 
 
-class PromptWebSocket(WebSocketsSansIOProtocol):
+class PromptWebSocket(_DropsWhoDoesNotRead, WebSocketsSansIOProtocol):
     """A WebSocket that drops a client which does not read."""
-
-    _unread: TimerHandle | None = None
-
-    def pause_writing(self) -> None:
-        """Wait for the client to read, but not for ever."""
-        super().pause_writing()
-        self._unread = self.loop.call_later(UNREAD_S, self.transport.abort)
-
-    def resume_writing(self) -> None:
-        """Go on: it has read."""
-        super().resume_writing()
-        _cancel(self._unread)
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        """Wait for nothing any more."""
-        _cancel(self._unread)
-        super().connection_lost(exc)
 
 
 def _cancel(timer: TimerHandle | None) -> None:

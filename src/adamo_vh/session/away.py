@@ -9,18 +9,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import asdict, replace
-from functools import cache
 from types import TracebackType
 from typing import Any, Self
-
-from pydantic import TypeAdapter
 
 from adamo_vh.action_server.remote import RemoteBody, connect
 from adamo_vh.cognition.agent import Agent, AgentConfig
 from adamo_vh.cognition.budget import BudgetGuard
 from adamo_vh.cognition.profile import PROFILES, Profile
 from adamo_vh.episode.config import EpisodeConfig
-from adamo_vh.inference.model import Model, Reply
+from adamo_vh.inference.model import Model, reply_codec
 from adamo_vh.observation import Frame
 from adamo_vh.perception import TextForm
 from adamo_vh.record.termination import Limits
@@ -123,14 +120,9 @@ class _Relay:
         if isinstance(event, Thought):
             # What a provider keeps for itself is nobody else's.
             reply = replace(event.reply, message=replace(event.reply.message, kept=""))
-            self._body.think(_codec().dump_python(reply, mode="json"))
+            self._body.think(reply_codec().dump_python(reply, mode="json"))
         if isinstance(event, Ended) and event.reason.is_scored and not self._body.ended:
             self._body.finish(event.answer, event.reason.value, event.why)
-
-
-@cache
-def _codec() -> TypeAdapter[Reply]:
-    return TypeAdapter(Reply)
 
 
 def _asked(config: EpisodeConfig, profile: Profile, player: str) -> dict[str, Any]:

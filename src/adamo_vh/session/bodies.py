@@ -49,20 +49,15 @@ def create_engine(scene: str = "s1", figure: str = "mara", variation: int = 0) -
         ConfigError: No figure has this name, or the engine of another package has no variations.
     """
     name, _, rest = scene.partition(":")
-    if is_offered(scene):
+    if (made := offered_by_others(ENGINES).get(name)) is not None:
         if variation:
             raise ConfigError(
                 f"variation is {variation}: the scenes of {name!r} have none; use 0 there."
             )
-        return cast(World, offered_by_others(ENGINES)[name].load()(rest, figure))
+        return cast(World, made.load()(rest, figure))
     from adamo_vh.session.variations import built_in_engine
 
     return built_in_engine(scene, figure, variation)
-
-
-def is_offered(scene: str) -> bool:
-    """Whether a scene is of an engine that another package offers."""
-    return scene.partition(":")[0] in offered_by_others(ENGINES)
 
 
 def offered_by_others(group: str) -> dict[str, EntryPoint]:
@@ -103,7 +98,7 @@ def opened(
             if (folder / SCENE).is_file():
                 # It is the variation itself, whatever is drawn for its number today.
                 scene, variation = str(folder / SCENE), 0
-        if is_offered(scene):
+        if scene.partition(":")[0] in offered_by_others(ENGINES):
             world = create_engine(scene, config.figure, variation)
             stack.callback(world.close)
         else:

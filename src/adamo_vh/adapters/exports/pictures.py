@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import base64
 from pathlib import Path
 from typing import Protocol
 
-from adamo_vh.files import make_folder, naming
+from adamo_vh.files import data_url, make_folder, naming
 from adamo_vh.inference.messages import ImagePart
 from adamo_vh.observation import Frame
 from adamo_vh.record.trajectory import frame_name
@@ -48,4 +47,4 @@ class InlinePictures:
 
     def url(self, picture: Frame | ImagePart) -> str:
         """The picture itself."""
-        return f"data:{picture.media_type};base64,{base64.b64encode(picture.data).decode()}"
+        return data_url(picture.media_type, picture.data)

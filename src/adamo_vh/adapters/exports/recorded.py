@@ -13,12 +13,10 @@ from adamo_vh.episode.result import EpisodeResult, Manifest, read_manifest, read
 from adamo_vh.errors import AdamoError, ConfigError, RecordError
 from adamo_vh.observation import Frame
 from adamo_vh.record.run_folder import FRAMES
-from adamo_vh.record.trajectory import Observed, Shown, Trajectory, read_trajectory
+from adamo_vh.record.trajectory import Observed, Shown, Trajectory, frame_type, read_trajectory
 from adamo_vh.study.store import EPISODES, episode_folder, is_study, read_outcomes
 
-_FRAME_NAME = re.compile(r"[0-9a-f]{8,64}\.(jpg|png)")
 """A recorded name must not lead out of the folder."""
-_MEDIA_TYPE = {"jpg": "image/jpeg", "png": "image/png"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,14 +63,14 @@ class Episode:
         Raises:
             RecordError: Its file is missing or its name is none of a picture.
         """
-        match = _FRAME_NAME.fullmatch(shown.frame)
+        kind = frame_type(shown.frame)
         path = self.folder / FRAMES / shown.frame
-        if match is None or not path.is_file():
+        if not kind or not path.is_file():
             raise RecordError(
                 f"{self.folder} lacks the picture {FRAMES}/{shown.frame}: copy the run folder "
                 "again with all of its pictures, or leave the episode out."
             )
-        return Frame(path.read_bytes(), _MEDIA_TYPE[match[1]], shown.width_px, shown.height_px)
+        return Frame(path.read_bytes(), kind, shown.width_px, shown.height_px)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from adamo_vh.action import ToolSchema
+from adamo_vh.files import data_url
 from adamo_vh.inference.arguments import dump_arguments, read_arguments
 from adamo_vh.inference.messages import (
     AIMessage,
@@ -96,15 +96,11 @@ def parts_of(parts: Sequence[Part]) -> list[Content]:
     from inspect_ai.model import ContentImage, ContentText
 
     return [
-        ContentImage(image=_data_url(part))
+        ContentImage(image=data_url(part.media_type, part.data))
         if isinstance(part, ImagePart)
         else ContentText(text=part.text)
         for part in parts
     ]
-
-
-def _data_url(image: ImagePart) -> str:
-    return f"data:{image.media_type};base64,{base64.b64encode(image.data).decode()}"
 
 
 def offered_tools(tools: Sequence[ToolSchema]) -> list[ToolInfo]:

@@ -15,7 +15,7 @@ from adamo_vh.episode.result import read_manifest
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import ModelKind
 from adamo_vh.record.run_folder import FRAMES, MANIFEST, RESULT, SCENE, reserve
-from adamo_vh.record.trajectory import Observer
+from adamo_vh.record.trajectory import Observer, frame_type
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.service.sharing import Engines
 from adamo_vh.session.lending import LentWorld
@@ -24,7 +24,6 @@ from adamo_vh.session.session import read_unfinished
 
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 _FRAME = re.compile(r"[0-9a-f]{24}\.(jpg|png)")
-_TYPES = {".jpg": "image/jpeg", ".png": "image/png"}
 _CHECK_S = 5.0
 
 Watch = Callable[[str], None]
@@ -128,7 +127,7 @@ class Episodes:
             raise ConfigError("There is no such frame.")
         if not read_manifest(path.parent.parent).config.profile.has_pictures:
             raise ConfigError("This episode is played without pictures.")
-        return path.read_bytes(), _TYPES[path.suffix]
+        return path.read_bytes(), frame_type(frame)
 
     def close(self) -> None:
         """Cut off what has not ended; it can be gone on with from its run folder."""
