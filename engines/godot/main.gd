@@ -8,6 +8,8 @@ const World = preload("res://world.gd")
 
 var socket = WebSocketClient.new()
 var world = null
+# Godot hands new materials to the renderer between two steps: until then all is drawn white.
+var materials_wait = false
 
 func _ready():
 	get_viewport().disable_3d = true
@@ -16,7 +18,6 @@ func _ready():
 	if url == "":
 		url = "ws://127.0.0.1:8020/engine"
 	socket.connect("connection_established", self, "_opened")
-	socket.connect("data_received", self, "_received")
 	socket.connect("connection_error", self, "_ended")
 	socket.connect("connection_closed", self, "_ended")
 	socket.set_buffers(8192, 64, 32768, 64)
@@ -31,8 +32,15 @@ func _ready():
 # Rays can be cast in here alone; so everything is answered in here, for some milliseconds on end.
 func _physics_process(_delta):
 	for _i in range(50):
+		if materials_wait:
+			return
 		socket.poll()
+		if socket.get_connection_status() == NetworkedMultiplayerPeer.CONNECTION_CONNECTED:
+			_answer_all()
 		OS.delay_usec(200)
+
+func _process(_delta):
+	materials_wait = false
 
 func _opened(_protocol = ""):
 	var version = Engine.get_version_info()
@@ -44,8 +52,8 @@ func _opened(_protocol = ""):
 func _ended(_clean = false):
 	get_tree().quit()
 
-func _received():
-	while socket.get_peer(1).get_available_packet_count() > 0:
+func _answer_all():
+	while not materials_wait and socket.get_peer(1).get_available_packet_count() > 0:
 		_answer(parse_json(socket.get_peer(1).get_packet().get_string_from_utf8()))
 
 func _send(message):
@@ -115,4 +123,5 @@ func _load_scene(name):
 		world.free()
 	world = World.new()
 	add_child(world)
+	materials_wait = true
 	return world.load_scene(folder)
