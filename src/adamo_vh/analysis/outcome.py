@@ -108,6 +108,8 @@ class Outcome:
     """The finer code of the failure."""
     state_hash: str = ""
     """Of the world at the end."""
+    assisted: bool = False
+    """Whether a person took part other than by what was said; see `EpisodeResult`."""
     isolation: Isolation = ""
     """How far a program that decided was kept from all but its body; see `EpisodeResult`."""
 
@@ -118,8 +120,8 @@ class Outcome:
 
     @property
     def is_ranked(self) -> bool:
-        """Whether it may be compared with others: not if the player may have seen the answers."""
-        return self.isolation not in UNSAFE
+        """Whether it may be compared with others; see `EpisodeResult.is_ranked`."""
+        return self.isolation not in UNSAFE and not self.assisted
 
     @property
     def is_complete(self) -> bool:
@@ -180,7 +182,7 @@ def outcome_of(
         variation=config.variation,
         labeling=manifest.labeling or str(config.labeling),
         # The mark goes where the name goes, and what is marked is never pooled with others.
-        model=result.model if result.is_ranked else f"{result.model} ({_MARK[result.isolation]})",
+        model=_marked(result),
         model_kind=result.model_kind,
         profile=result.profile,
         task=config.task or config.instruction,
@@ -218,8 +220,16 @@ def outcome_of(
         diagnosis=diagnosis[0],
         diagnosis_code=diagnosis[1],
         state_hash=result.state_hash,
+        assisted=result.assisted,
         isolation=result.isolation,
     )
+
+
+def _marked(result: EpisodeResult) -> str:
+    """The model's name; with a mark, if it may not be compared with others."""
+    marks = [_MARK[result.isolation]] if result.isolation in UNSAFE else []
+    marks += ["assisted"] if result.assisted else []
+    return f"{result.model} ({', '.join(marks)})" if marks else result.model
 
 
 def outcome_json(outcome: Outcome) -> str:

@@ -160,7 +160,7 @@ def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
     same = not report.mismatches
     if as_json:
         found = {"steps": report.steps, "same": same, "mismatches": report.mismatches}
-        put_json({**found, "frames_differ": report.frames_differ})
+        put_json({**found, "frames_differ": report.frames_differ, "cut": report.cut})
     elif same:
         frames = (
             "all frames equal"
@@ -168,6 +168,10 @@ def replay_and_show(run_dir: Path, start: int, *, as_json: bool) -> None:
             else (f"{report.frames_differ} frames differ in bytes (another machine or driver)")
         )
         say(f"Same: every state hash equal in {report.steps} steps; {frames}.")
+        if report.cut:
+            say(
+                f"Not executed: {report.cut} that a person cut short; their saved states are whole."
+            )
     else:
         for mismatch in report.mismatches:
             say(f"Different: {mismatch}")
@@ -282,6 +286,8 @@ def _print_result(result: EpisodeResult, folder: Path) -> None:
     line("model", _accounts(result))
     for warning in result.warnings:
         line("warning", warning)
+    if result.assisted:
+        line("assisted", "a person took part; not ranked")
     if result.isolation:
         told = (
             "" if result.is_ranked else ": the player may have seen more than its body; not ranked"

@@ -13,6 +13,7 @@ from adamo_vh.cognition.doubts import Doubts
 from adamo_vh.cognition.guards import Guard
 from adamo_vh.cognition.memory.protocol import Memory, Result
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
+from adamo_vh.cognition.oversight import Oversight
 from adamo_vh.cognition.profile import PAPER, Profile
 from adamo_vh.cognition.prompts import render
 from adamo_vh.cognition.stops import Errand, Stops
@@ -34,8 +35,10 @@ from adamo_vh.record.trajectory import (
     LeftOut,
     Lost,
     Observer,
+    Restored,
     Started,
     Thought,
+    Vetoed,
     observed,
     shown,
 )
@@ -70,6 +73,7 @@ class Agent:
         records: Sequence[Observer] = (),
         observers: Sequence[Observer] = (),
         known: Sequence[Event] = (),
+        oversight: Oversight | None = None,
     ) -> None:
         """Bring a model and a body together.
 
@@ -84,6 +88,7 @@ class Agent:
             records: Must be told of every event: a fault of theirs ends the episode.
             observers: Are told of every event; a fault of theirs ends nothing.
             known: What is on record already and will come again, to the same ends.
+            oversight: The word of a person who watches; nobody does by default.
         """
         config = config or AgentConfig()
         self._model = model
@@ -94,7 +99,7 @@ class Agent:
         self._memory: Memory = memory or ShortTermMemory(
             system_prompt, config.k, config.profile, config.text_form
         )
-        self._stops = Stops(config.limits, guards, known)
+        self._stops = Stops(config.limits, guards, known, oversight)
         self._telling = Telling((self._stops, *records), observers)
         self._tools = offered(server.actions, config.profile)
         self._steps = 0
@@ -129,6 +134,8 @@ class Agent:
             elif turn.ends:
                 self._reply(turn, render("said"))
                 return turn.stop
+            elif why := self._stops.veto(turn):
+                self._leave_out(turn, why)
             else:
                 self.act(turn)
         return stop
@@ -155,21 +162,33 @@ class Agent:
         self._look_again(results)
         self._memory.add_step(*self._remembered(turn.message, results))
 
-    def happened(self, event: WorldEvent, state_hash: str) -> None:
+    def happened(self, event: WorldEvent, state_hash: str, *, by_user: bool = False) -> None:
         """Take note that something happened in the world which the body did not do.
 
         Args:
             event: What happened; the model is told nothing but what it sees.
             state_hash: Digest of the world afterwards.
+            by_user: Whether a person who watches brought it about.
         """
         self._state_hash = state_hash
-        self._tell(Happened(self._steps, event, state_hash))
+        self._tell(Happened(self._steps, event, state_hash, by_user))
 
     def lost(self, spent: Spent) -> None:
         """Take note of what was spent on an answer that never came, before it goes on here."""
         self._tell(Lost(self._steps, spent))
 
+    def restore(self, saved: str) -> None:
+        """Let the world stand as it did when an earlier instruction began; the model is told.
+
+        Args:
+            saved: The saved state of then.
+        """
+        self._state_hash = self._server.load(saved)
+        self._tell(Restored(self._steps, saved, self._state_hash))
+        self._memory.remark(render("undone"))
+
     def _begin(self, instruction: str) -> None:
+        self._stops.begin()
         self._errand = Errand(self._steps, Doubts(self._profile))
         saved, sighting = "", None
         try:
@@ -195,6 +214,8 @@ class Agent:
 
     def _why_not(self, wish: Wish, results: Sequence[Result]) -> str:
         """Why a call is left out; empty if it is to be executed."""
+        if why := self._stops.why_not:
+            return why
         if wish.is_finish:
             return "Finish comes alone, when you have seen what the other calls did"
         if len(results) >= self._profile.plan:
@@ -205,6 +226,13 @@ class Agent:
         if results and not results[-1].went_as_planned:
             return "an earlier call of this turn did not go as planned"
         return ""
+
+    def _leave_out(self, turn: Turn, why: str) -> None:
+        """Do nothing of a turn that a person does not allow."""
+        self._tell(Vetoed(self._steps, why))
+        told = f"the user did not allow it: {why.rstrip('.')}"
+        results = [self._left_out(wish, told) for wish in turn.wishes]
+        self._memory.add_step(*self._remembered(turn.message, results))
 
     def _left_out(self, wish: Wish, why_not: str) -> Result:
         self._tell(LeftOut(self._steps, wish.call.id, wish.call.name, why_not))

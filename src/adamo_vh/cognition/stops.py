@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 
 from adamo_vh.cognition.doubts import Doubts
 from adamo_vh.cognition.guards import Guard, LoopGuard, ProtocolGuard
+from adamo_vh.cognition.oversight import Oversight
 from adamo_vh.observation import Frame
-from adamo_vh.record.termination import Limits, Stop, Stopwatch
-from adamo_vh.record.trajectory import Ended, Event
+from adamo_vh.record.termination import Limits, Stop, Stopwatch, TerminationReason
+from adamo_vh.record.trajectory import Ended, Event, LeftOut, Vetoed
+from adamo_vh.record.turn import Turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +27,19 @@ class Errand:
 
 
 class Stops:
-    """Limits, loops, protocol, budgets, and what is on record already.
+    """Limits, loops, protocol, budgets, a person's word, and what is on record already.
 
     An agent that carries out again what is on record ends as it did then, whatever stopped it: a
-    clock, a budget or a provider that failed. The guards hear everything, and have a say when the
-    record is used up.
+    clock, a budget, a person or a provider that failed. The guards hear everything, and have a say
+    when the record is used up.
     """
 
     def __init__(
-        self, limits: Limits, guards: Sequence[Guard], known: Sequence[Event] = ()
+        self,
+        limits: Limits,
+        guards: Sequence[Guard],
+        known: Sequence[Event] = (),
+        oversight: Oversight | None = None,
     ) -> None:
         """Set the reasons.
 
@@ -41,7 +47,9 @@ class Stops:
             limits: Of each instruction.
             guards: Further reasons, e.g. a budget.
             known: What is on record and will come again.
+            oversight: The word of a person.
         """
+        self._oversight = oversight or Oversight()
         self._limits = limits
         self._guards: tuple[Guard, ...] = (
             ProtocolGuard(limits.max_unreadable),
@@ -62,6 +70,23 @@ class Stops:
         """Whether the end comes next in the record: what it broke on then is not tried again."""
         return bool(self._ahead) and isinstance(self._ahead[0], Ended)
 
+    def begin(self) -> None:
+        """An instruction begins."""
+        self._oversight.begin()
+
+    def veto(self, turn: Turn) -> str:
+        """Why a person does not let a turn be carried out; empty if nobody minds."""
+        if self._ahead:
+            return self._ahead[0].why if isinstance(self._ahead[0], Vetoed) else ""
+        return self._oversight.objection(turn)
+
+    @property
+    def why_not(self) -> str:
+        """Why the next call is not carried out: a person has stopped the agent meanwhile."""
+        if self._ahead:
+            return self._ahead[0].why if isinstance(self._ahead[0], LeftOut) else ""
+        return "the user stopped you" if self._oversight.is_stopped else ""
+
     def stop(self, errand: Errand, steps: int) -> Stop | None:
         """Why to stop now; None to go on.
 
@@ -73,6 +98,8 @@ class Stops:
             if not isinstance(ended := self._ahead[0], Ended):
                 return None
             return Stop(ended.reason, ended.why, ended.answer, ended.spent)
+        if self._oversight.is_stopped:
+            return Stop(TerminationReason.STOPPED, "The user stopped it.")
         if limit := self._limits.exceeded(steps - errand.first_step, errand.watch.seconds):
             return limit
         return next((stop for guard in self._guards if (stop := guard.stop())), None)

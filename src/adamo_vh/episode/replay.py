@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from adamo_vh.action import Code
 from adamo_vh.action_server import ActionServer, execute_call
 from adamo_vh.engine import World
 from adamo_vh.errors import RecordError
@@ -14,6 +15,7 @@ from adamo_vh.record.trajectory import (
     Event,
     Happened,
     Observed,
+    Restored,
     Started,
     Trajectory,
     frame_name,
@@ -30,6 +32,8 @@ class ReplayReport:
     """What differed, in order; empty if every state hash is the same."""
     frames_differ: int
     """Frames with other bytes: possible on another machine, no error there."""
+    cut: int = 0
+    """Actions that a person cut short: not executed, as nobody cuts again at the same moment."""
 
 
 def replay(
@@ -53,7 +57,8 @@ def replay(
     if began is None or not began.saved:
         raise RecordError("The episode broke before its first view; there is nothing to replay.")
     now = server.load(acts[start - 1].saved if start else began.saved)
-    mismatches, frames_differ = [], 0
+    mismatches: list[str] = []
+    frames_differ = cut = 0
     before = acts[start - 1].state_hash if start else began.state_hash
     if now != before:
         mismatches.append(f"the state after step {start} differs from the recorded one")
@@ -62,27 +67,36 @@ def replay(
         if isinstance(event, Started) and event.saved and event is not began:
             # A further instruction begins where it stands; free play may have gone back before.
             server.load(event.saved)
-        if isinstance(event, Acted):
-            result = execute_call(server, event.name, event.arguments)
-            frame = None if result.observation is None else result.observation.frame
-            if result.state_hash != event.state_hash:
+        if isinstance(event, Acted | Happened | Restored):
+            is_cut = isinstance(event, Acted) and event.feedback.code == Code.CANCELLED
+            cut += is_cut
+            digest, frame = _led_to(event, server, world, is_cut=is_cut)
+            if digest != event.state_hash:
+                what = event.name if isinstance(event, Acted) else event.type
                 mismatches.append(
-                    f"step {event.step}: {event.name} led to state {result.state_hash[:12]}, "
-                    f"recorded {event.state_hash[:12]}"
-                )
-        if isinstance(event, Happened):
-            world.apply(event.event)
-            if (digest := world.state().hash()) != event.state_hash:
-                mismatches.append(
-                    f"after step {event.step}: {event.event.type} led to state {digest[:12]}, "
-                    f"recorded {event.state_hash[:12]}"
+                    f"step {event.step}: {what} led to state {digest[:12]}, recorded "
+                    f"{event.state_hash[:12]}"
                 )
         if isinstance(event, Observed):
             # A view that no action brought was asked for: at the start, or to see what changed.
             seen = frame or server.observe().observation.frame
             frames_differ += frame_name(seen) != event.frame
             frame = None
-    return ReplayReport(len(acts) - start, tuple(mismatches), frames_differ)
+    return ReplayReport(len(acts) - start - cut, tuple(mismatches), frames_differ, cut)
+
+
+def _led_to(
+    event: Acted | Happened | Restored, server: ActionServer, world: World, *, is_cut: bool
+) -> tuple[str, Frame | None]:
+    """Let an event come again; the digest of the world then, and the view that it brought."""
+    if isinstance(event, Happened):
+        world.apply(event.event)
+        return world.state().hash(), None
+    if isinstance(event, Restored) or is_cut:
+        return server.load(event.saved), None
+    result = execute_call(server, event.name, event.arguments)
+    view = result.observation
+    return result.state_hash, None if view is None else view.frame
 
 
 def _events_after(recorded: Trajectory, start: int) -> Iterator[Event]:
@@ -91,6 +105,6 @@ def _events_after(recorded: Trajectory, start: int) -> Iterator[Event]:
     for event in recorded.events:
         count += isinstance(event, Acted)
         has_begun = has_begun or isinstance(event, Started)
-        happened_since = isinstance(event, Happened) and has_begun and count == start
+        happened_since = isinstance(event, Happened | Restored) and has_begun and count == start
         if count > start or happened_since or (start == 0 and has_begun):
             yield event

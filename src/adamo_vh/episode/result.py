@@ -125,6 +125,8 @@ class EpisodeResult:
     """What people should know of the replies; see `Reply.warning`."""
     own_labeling: str = ""
     """Class of the labeling, if it was handed in; `labeling` plays no part then."""
+    assisted: bool = False
+    """Whether a person took part other than by what was said; see `Trajectory.assisted`."""
     isolation: Isolation = ""
     """How far a program that decided was kept from all but its body; empty if a model was asked."""
     seal: Seal | None = None
@@ -157,8 +159,11 @@ class EpisodeResult:
 
     @property
     def is_ranked(self) -> bool:
-        """Whether it may be compared with others: not if the player may have seen the answers."""
-        return self.isolation not in UNSAFE
+        """Whether it may be compared with others.
+
+        Not if the player may have seen the answers, nor if a person helped.
+        """
+        return self.isolation not in UNSAFE and not self.assisted
 
     @property
     def tokens(self) -> int:
@@ -237,6 +242,7 @@ def summarise(
         cost_usd=total_cost(answers),
         warnings=_warnings(replies),
         own_labeling=manifest.labeling,
+        assisted=trajectory.assisted,
         isolation=manifest.isolation,
         rungs=tuple(sorted({str(reply.rung) for reply in replies if reply.rung is not None})),
         model_s=sum(reply.seconds for reply in replies),
@@ -244,7 +250,7 @@ def summarise(
         walked_m=sum(act.feedback.walked_m for act in trajectory.acts),
         direct_m=sum(a.horizontal_distance(b) for a, b in pairwise(stops)),
         run=None if run is None else str(run),
-        state_hash=ended.state_hash,
+        state_hash=trajectory.state_hash,
         final=final,
     )
 

@@ -32,6 +32,7 @@ class ModelKind(StrEnum):
     RANDOM = "random"
     SCRIPTED = "scripted"
     REPLAY = "replay"
+    HUMAN = "human"
     OUTSIDE = "outside"
     """A program of which nothing is known but its calls."""
 

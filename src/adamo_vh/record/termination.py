@@ -22,6 +22,8 @@ class TerminationReason(StrEnum):
     """Terminated: several replies in a row were neither a valid call nor an answer."""
     LOOP = "loop"
     """Truncated: the same call in the same state, or replies without any call, again and again."""
+    STOPPED = "stopped"
+    """Truncated: a person stopped it; see `EpisodeResult.assisted`."""
     BUDGET = "budget"
     """Truncated: the episode's own budget of tokens, money, calls or seconds is used up."""
     STEP_LIMIT = "step_limit"
@@ -40,12 +42,13 @@ class TerminationReason(StrEnum):
 
     @property
     def is_truncated(self) -> bool:
-        """Whether a cap ended it before the agent did."""
+        """Whether a cap or a person ended it before the agent did."""
         return self in _CAPS
 
 
 _CAPS = (
     TerminationReason.LOOP,
+    TerminationReason.STOPPED,
     TerminationReason.BUDGET,
     TerminationReason.STEP_LIMIT,
     TerminationReason.TIME_LIMIT,

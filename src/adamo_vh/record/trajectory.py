@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from adamo_vh.action import Feedback
+from adamo_vh.action import Code, Feedback
 from adamo_vh.engine import ObjectState, WorldEvent
 from adamo_vh.errors import RecordError
 from adamo_vh.inference.model import Reply, Spent
@@ -142,7 +142,30 @@ class Happened:
     step: int
     event: Annotated[WorldEvent, Field(discriminator="type")]
     state_hash: str
+    by_user: bool = False
+    """Whether a person who watched brought it about."""
     type: Literal["happened"] = "happened"
+
+
+@dataclass(frozen=True, slots=True)
+class Vetoed:
+    """A person did not let the turn be carried out."""
+
+    step: int
+    why: str
+    """What the model was told of the reason."""
+    type: Literal["vetoed"] = "vetoed"
+
+
+@dataclass(frozen=True, slots=True)
+class Restored:
+    """A person put the world back as it was when an earlier instruction began."""
+
+    step: int
+    saved: str
+    """The saved state that it went back to."""
+    state_hash: str
+    type: Literal["restored"] = "restored"
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +191,20 @@ class Stood:
     type: Literal["stood"] = "stood"
 
 
-Event = Started | Observed | Thought | Acted | LeftOut | Shown | Happened | Stood | Lost | Ended
+Event = (
+    Started
+    | Observed
+    | Thought
+    | Acted
+    | LeftOut
+    | Shown
+    | Happened
+    | Vetoed
+    | Restored
+    | Stood
+    | Lost
+    | Ended
+)
 
 
 class Observer(Protocol):
@@ -222,6 +258,19 @@ def codec() -> TypeAdapter[Event]:
     return TypeAdapter(Annotated[Event, Field(discriminator="type")])
 
 
+def _is_by_hand(event: Event) -> bool:
+    match event:
+        case Vetoed() | Restored():
+            return True
+        case Happened():
+            return event.by_user
+        case Acted():
+            return event.feedback.code == Code.CANCELLED
+        case Ended():
+            return event.reason is TerminationReason.STOPPED
+    return False
+
+
 class Trajectory:
     """Keeps events in memory, in order."""
 
@@ -250,6 +299,14 @@ class Trajectory:
         return [spent for spent in ends if spent is not None]
 
     @property
+    def assisted(self) -> bool:
+        """Whether a person took part other than by what was said: moved, stopped, forbade, undid.
+
+        What a person stops ends as such, or leaves an action cut short.
+        """
+        return any(_is_by_hand(event) for event in self.events)
+
+    @property
     def instructions(self) -> list[str]:
         """Everything the user said, in order; one, unless it was a conversation."""
         return [e.instruction for e in self.events if isinstance(e, Started)]
@@ -257,8 +314,16 @@ class Trajectory:
     @property
     def ended(self) -> Ended | None:
         """How it ended; None if the last instruction did not get that far."""
-        last = self.events[-1] if self.events else None
-        return last if isinstance(last, Ended) else None
+        for event in reversed(self.events):
+            if not isinstance(event, Happened | Restored | Stood):
+                return event if isinstance(event, Ended) else None
+        return None
+
+    @property
+    def state_hash(self) -> str:
+        """Digest of the world after all of it; empty before the first view."""
+        leads = Started | Acted | Happened | Restored | Ended
+        return next((e.state_hash for e in reversed(self.events) if isinstance(e, leads)), "")
 
 
 def read_trajectory(folder: Path, damaged: list[str] | None = None) -> Trajectory:

@@ -10,7 +10,15 @@ from collections.abc import Callable, Sequence
 from adamo_vh.engine import WorldState
 from adamo_vh.errors import RecordError
 from adamo_vh.observation import Frame
-from adamo_vh.record.trajectory import Acted, Event, Happened, Observer, Stood, Trajectory
+from adamo_vh.record.trajectory import (
+    Acted,
+    Event,
+    Happened,
+    Observer,
+    Restored,
+    Stood,
+    Trajectory,
+)
 
 
 class Witness:
@@ -31,7 +39,7 @@ class Witness:
         """Pass an event on; after a step, the state as well."""
         for record in self._records:
             record.notify(event, frame)
-        if isinstance(event, Acted | Happened):
+        if isinstance(event, Acted | Happened | Restored):
             now, before = self._state(), self._last
             stood = _change(event.step, before, now)
             self._last = now
@@ -59,7 +67,7 @@ def states_between(recorded: Trajectory, initial: WorldState) -> tuple[WorldStat
     """
     states, now, hashed = [], initial, ""
     for event in recorded.events:
-        if isinstance(event, Acted | Happened):
+        if isinstance(event, Acted | Happened | Restored):
             if hashed:
                 break
             hashed = event.state_hash

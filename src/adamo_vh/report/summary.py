@@ -28,6 +28,11 @@ _ENDINGS = {
         "Loop",
         "Stopped: {limits.max_repeats} times the same call into the same state, or no call.",
     ),
+    TerminationReason.STOPPED: (
+        "truncated",
+        "Stopped",
+        "A person stopped it.",
+    ),
     TerminationReason.BUDGET: (
         "truncated",
         "Budget",
@@ -60,6 +65,7 @@ KINDS = {
     ModelKind.RANDOM: "random player, no VLM",
     ModelKind.SCRIPTED: "scripted player, no VLM",
     ModelKind.REPLAY: "recorded answers, no live model",
+    ModelKind.HUMAN: "a person, no model",
     ModelKind.OUTSIDE: "a program from outside, which may be no VLM",
 }
 """What kind of player a model is, so that nobody takes one for another."""

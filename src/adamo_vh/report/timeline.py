@@ -12,13 +12,16 @@ from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from typing import Any
 
+from adamo_vh.engine import LightChanged, ObjectAdded, ObjectMoved, ObjectTaken
 from adamo_vh.observation import AgentState
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import (
     Acted,
     Ended,
+    Happened,
     LeftOut,
     Observed,
+    Restored,
     Shown,
     Started,
     Thought,
@@ -143,6 +146,8 @@ class ShownTurn:
     deeds: tuple[Deed, ...] = ()
     closing: Closing | None = None
     """What Finish said, if the model called it and nothing else."""
+    by_hand: tuple[str, ...] = ()
+    """What happened meanwhile that the body did not do."""
     tone: str = "view"
     """What kind of turn it is: the tone of its last executed deed, "answer", "empty", "returned"
     (the model had to go on), "unreadable", "cut" or "view"."""
@@ -189,6 +194,8 @@ class _Timeline:
         self._agent: AgentState | None = None
         self._fresh = False
         self._started: Started | None = None
+        self._by_hand: list[str] = []
+        """What happened since the last turn that is closed."""
 
     def take(self, event: object) -> None:
         match event:
@@ -205,6 +212,8 @@ class _Timeline:
             case LeftOut():
                 if self._draft:
                     self._draft.left_out.append(event.why)
+            case Happened() | Restored():
+                self._by_hand.append(_told(event))
             case Shown():
                 if self._draft:
                     self._draft.pictures.setdefault(event.step, []).append(event)
@@ -217,6 +226,10 @@ class _Timeline:
         if self._fresh:
             self._open(None)
             self._close(ended)
+        if self._by_hand and self.turns:
+            last = self.turns[-1]
+            self.turns[-1] = replace(last, by_hand=(*last.by_hand, *self._by_hand))
+            self._by_hand.clear()
 
     def _acted(self, event: Acted) -> None:
         draft = self._draft
@@ -260,8 +273,10 @@ class _Timeline:
             ended=None if self._fresh else ended,
             note=note,
             deeds=tuple(_own_notes(note, deeds)),
+            by_hand=tuple(self._by_hand),
             closing=Closing.of(closing) if closing else None,
         )
+        self._by_hand.clear()
         tone = _tone(turn, ended, went_on=went_on)
         self.turns.append(replace(turn, tone=tone, label=_label(turn, tone)))
 
@@ -295,6 +310,22 @@ def turns(trajectory: Trajectory) -> tuple[ShownTurn, ...]:
         timeline.take(event)
     timeline.finish()
     return tuple(timeline.turns)
+
+
+def _told(event: Happened | Restored) -> str:
+    """What happened to the world, in words."""
+    if isinstance(event, Restored):
+        return "The user put everything back as it was before the instruction."
+    who = "by the user" if event.by_user else "from outside"
+    match event.event:
+        case ObjectMoved(object_id=number):
+            return f"Object {number} was moved {who}."
+        case ObjectTaken(object_id=number):
+            return f"Object {number} was taken away {who}."
+        case ObjectAdded(object_id=number):
+            return f"Object {number} was brought {who}."
+        case LightChanged():
+            return f"The light was changed {who}."
 
 
 def _deed(wish: Wish | None, act: Acted | None) -> Deed:

@@ -14,7 +14,7 @@ from adamo_vh.errors import ConfigError, ModelConfigError
 from adamo_vh.inference.model import Model, ModelKind, Reply, Rung
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.inference.players.checked import checked
-from adamo_vh.inference.players.outside import OUTSIDE
+from adamo_vh.inference.players.outside import HUMAN, OUTSIDE
 from adamo_vh.inference.players.resumed import resumed
 from adamo_vh.inference.players.scripted import ScriptedModel, load_script
 from adamo_vh.inference.registry import check_remote_uri, create_model
@@ -53,6 +53,8 @@ def model_of(
         ModelConfigError: The model is unknown or lacks a key or an extra.
         RecordError: A run folder or cassette is missing or damaged.
     """
+    if uri == HUMAN:
+        raise ModelConfigError("A person drives the body in the studio: adamo-vh studio.")
     if uri.startswith(f"{OUTSIDE}:"):
         raise ModelConfigError(
             f"{uri} is a mind that comes from outside: it plays, or goes on, by adamo-vh mcp."

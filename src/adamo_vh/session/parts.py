@@ -15,6 +15,7 @@ from adamo_vh.action_server.frame_cache import FrameCache
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.guards import Guard
 from adamo_vh.cognition.memory.protocol import NewMemory
+from adamo_vh.cognition.oversight import Consent
 from adamo_vh.engine import World
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import Manifest
@@ -44,6 +45,8 @@ class Parts(TypedDict, total=False):
     """Makes the memory, in place of the short-term memory."""
     guards: Sequence[Guard]
     """Further reasons to stop."""
+    consent: Consent | None
+    """Is asked before a turn is carried out, and says why not; see `Oversight`."""
     observers: Sequence[Observer]
     """Are told of every event that is new; a fault of theirs ends nothing."""
     frame_cache: FrameCache | None

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from adamo_vh.engine import WorldEvent
-from adamo_vh.inference.model import Spent
 from adamo_vh.observation import Frame
-from adamo_vh.record.trajectory import Event, Happened, Lost, Observer
+from adamo_vh.record.trajectory import Event, Happened, Lost, Observer, Restored
+
+BroughtAbout = Happened | Lost | Restored
+"""What is on record and not of the agent's doing."""
 
 
 def later(observers: Sequence[Observer], known: int) -> Sequence[Observer]:
@@ -40,22 +41,15 @@ class _FromThen:
 class Again:
     """Lets happen what is on record and not of the agent's doing, at the moment of then."""
 
-    def __init__(
-        self,
-        known: Sequence[Event],
-        apply: Callable[[WorldEvent], None],
-        lose: Callable[[Spent], None],
-    ) -> None:
+    def __init__(self, known: Sequence[Event], bring_about: Callable[[BroughtAbout], None]) -> None:
         """Prepare.
 
         Args:
             known: What is on record and will come again.
-            apply: Lets something happen in the world.
-            lose: Takes note of what an answer took that never came.
+            bring_about: Lets it happen again.
         """
         self._ahead = deque(known)
-        self._apply = apply
-        self._lose = lose
+        self._bring_about = bring_about
 
     def notify(self, event: Event, frame: Frame | None = None) -> None:
         """Go on in the record."""
@@ -65,8 +59,5 @@ class Again:
 
     def catch_up(self) -> None:
         """Let happen what is next, if it is nothing that the agent does."""
-        match self._ahead[0] if self._ahead else None:
-            case Happened() as happened:
-                self._apply(happened.event)
-            case Lost() as lost:
-                self._lose(lost.spent)
+        if self._ahead and isinstance(event := self._ahead[0], BroughtAbout):
+            self._bring_about(event)

@@ -12,6 +12,7 @@ from adamo_vh.cognition.agent import Agent, AgentConfig
 from adamo_vh.cognition.budget import Budget, BudgetGuard
 from adamo_vh.cognition.forecast import Forecast
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
+from adamo_vh.cognition.oversight import Oversight
 from adamo_vh.engine import World, WorldEvent
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import (
@@ -21,7 +22,7 @@ from adamo_vh.episode.result import (
     write_record,
 )
 from adamo_vh.errors import ConfigError, RecordError
-from adamo_vh.inference.model import Model, ModelKind, Spent
+from adamo_vh.inference.model import Model, ModelKind
 from adamo_vh.inference.players.cassette import FOLDER, Cassette, taped
 from adamo_vh.record.run_folder import (
     EVENTS,
@@ -32,8 +33,11 @@ from adamo_vh.record.run_folder import (
 from adamo_vh.record.trajectory import (
     Ended,
     Event,
+    Happened,
     Lost,
     Observer,
+    Restored,
+    Started,
     Stood,
     Trajectory,
     read_trajectory,
@@ -49,11 +53,12 @@ from adamo_vh.session.bodies import (
     open_server,
     opened,
 )
+from adamo_vh.session.cut_short import as_recorded
 from adamo_vh.session.forecasting import check_price, forecast_episodes, refuse_early
 from adamo_vh.session.minds import fitting, lasting, opened_model, resumed_model
 from adamo_vh.session.parts import Parts, capped, describe
 from adamo_vh.session.recording import begin_record, told_result
-from adamo_vh.session.repeating import Again, later
+from adamo_vh.session.repeating import Again, BroughtAbout, later
 
 
 class Session:
@@ -109,10 +114,11 @@ class Session:
         )
         if task is not None and task.needs_history:
             records = (Witness(records, world.state),)
-        self._happening = Again(heard, self.apply, self._lose)
+        self._happening = Again(heard, self._bring_about)
+        self._oversight = Oversight(parts.get("consent"))
         self._agent = Agent(
             model,
-            server,
+            as_recorded(server, heard),
             prompt,
             AgentConfig(config.profile, config.k, config.text_form, config.sampling, config.limits),
             memory=memory(prompt, config.k, config.profile, config.text_form),
@@ -120,6 +126,7 @@ class Session:
             records=(*records, self._happening),
             observers=later(parts.get("observers", ()), len(heard)),
             known=heard,
+            oversight=self._oversight,
         )
 
     @classmethod
@@ -221,7 +228,8 @@ class Session:
                 )
             check_handed(path, manifest, recorded, parts.get("tools"), parts.get("labeling"))
             on_file = known = recorded.events
-            if (ended := recorded.ended) is not None and not ended.reason.is_scored:
+            ended = known[-1] if known else None
+            if isinstance(ended, Ended) and not ended.reason.is_scored:
                 # It broke: let it go on from there, and what it paid stay on record.
                 on_file = known[:-1]
                 known = [*on_file, *([Lost(ended.steps, ended.spent)] if ended.spent else ())]
@@ -284,17 +292,51 @@ class Session:
             raise self._writer.fault
         return ended
 
-    def apply(self, event: WorldEvent) -> None:
+    def stop(self) -> None:
+        """Let the instruction that is being carried out end as stopped; from any thread.
+
+        What the model is being asked is still waited for, and nothing of it is done.
+        """
+        self._oversight.stop()
+
+    def apply(self, event: WorldEvent, *, by_user: bool = False) -> None:
         """Let something happen in the world that its body does not do; it goes on record.
+
+        Args:
+            event: What happens.
+            by_user: Whether a person who watches does it: the episode is then an assisted one.
 
         Raises:
             EngineError: The engine cannot do it, or not now; nothing changed.
         """
         self.engine.apply(event)
-        self._agent.happened(event, self.engine.state().hash())
+        self._agent.happened(event, self.engine.state().hash(), by_user=by_user)
 
-    def _lose(self, spent: Spent) -> None:
-        self._agent.lost(spent)
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is an instruction to undo."""
+        return bool(_in_effect(self._trajectory))
+
+    def undo(self) -> None:
+        """Put the world back as it was before the last instruction that is still in effect.
+
+        The model is told with the next one. What was dragged since is put back too.
+
+        Raises:
+            ConfigError: There is none.
+        """
+        if not (starts := _in_effect(self._trajectory)):
+            raise ConfigError("There is nothing to undo: no instruction was carried out.")
+        self._agent.restore(starts[-1].saved)
+
+    def _bring_about(self, event: BroughtAbout) -> None:
+        match event:
+            case Happened():
+                self.apply(event.event, by_user=event.by_user)
+            case Restored():
+                self._agent.restore(event.saved)
+            case Lost():
+                self._agent.lost(event.spent)
 
     def result(self) -> EpisodeResult:
         """Score and count what happened since the session began; written into the run folder.
@@ -319,6 +361,17 @@ class Session:
     def __exit__(self, *_: object) -> None:
         """Close it."""
         self.close()
+
+
+def _in_effect(trajectory: Trajectory) -> list[Started]:
+    """The instructions that were carried out and not undone since."""
+    starts: list[Started] = []
+    for event in trajectory.events:
+        if isinstance(event, Started) and event.saved:
+            starts.append(event)
+        elif isinstance(event, Restored) and starts:
+            starts.pop()
+    return starts
 
 
 def read_unfinished(folder: Path) -> Trajectory:

@@ -23,7 +23,14 @@ from adamo_vh.perception import Tagger
 from adamo_vh.record.digest import Seal, differences
 from adamo_vh.record.run_folder import EVENTS, MANIFEST, RESULT
 from adamo_vh.record.signing import fingerprint, is_signed
-from adamo_vh.record.trajectory import Acted, Happened, Started, Trajectory, read_trajectory
+from adamo_vh.record.trajectory import (
+    Acted,
+    Happened,
+    Restored,
+    Started,
+    Trajectory,
+    read_trajectory,
+)
 from adamo_vh.session.bodies import check_handed, open_server, opened
 
 
@@ -124,7 +131,8 @@ def _unfounded(
     folder: Path, manifest: Manifest, recorded: Trajectory, result: EpisodeResult
 ) -> Iterator[str]:
     """What the result says otherwise than the record gives by today's rules."""
-    states = [e.state_hash for e in recorded.events if isinstance(e, Started | Acted | Happened)]
+    leads = Started | Acted | Happened | Restored
+    states = [event.state_hash for event in recorded.events if isinstance(event, leads)]
     if states and result.state_hash != states[-1]:
         yield f"{RESULT}: the last state is not that of the last step in {EVENTS}"
     if result.final.hash() != result.state_hash:

@@ -27,6 +27,7 @@ from adamo_vh.record.trajectory import (
     Acted,
     Event,
     Observed,
+    Restored,
     Shown,
     Started,
     Thought,
@@ -73,8 +74,12 @@ def prompts(episode: Episode) -> tuple[Prompt, ...]:
     known = [event for event in told.events if event.type not in ("happened", "stood", "lost")]
     again = Trajectory()
     agent = Agent(mind, body, prompt, settings, memory=memory, records=(again,), known=known)
-    for instruction in told.instructions:
-        agent.run(instruction)
+    for event in told.events:
+        if isinstance(event, Restored):
+            agent.restore(event.saved)
+        if not isinstance(event, Started):
+            continue
+        agent.run(event.instruction)
         if body.fault is not None:
             raise body.fault
     _check(episode, again)

@@ -20,6 +20,8 @@ from adamo_vh.inference.messages import AIMessage, Message, SystemMessage, ToolC
 from adamo_vh.inference.model import Isolation, ModelInfo, ModelKind, Reply, Sampling, Spent
 from adamo_vh.readable import readable
 
+HUMAN = "human"
+"""The name of a person who drives the body: he too replies when he has decided."""
 OUTSIDE = "outside"
 """First word of the name of every such model."""
 UNKNOWN: Isolation = "unknown"
@@ -65,7 +67,7 @@ class OutsideModel:
         """Wait for nobody yet.
 
         Args:
-            name: As of `outside_name`.
+            name: As of `outside_name`, or `HUMAN`.
             within_s: Seconds that all replies may take together.
             answered: Replies that were given before an interruption.
             isolation: How far it is kept from all but its body; see `ModelInfo`.
@@ -84,8 +86,9 @@ class OutsideModel:
 
     @property
     def info(self) -> ModelInfo:
-        """From outside."""
-        return ModelInfo(self._name, ModelKind.OUTSIDE, isolation=self._isolation)
+        """From outside; of a person, that it is one."""
+        kind = ModelKind.HUMAN if self._name == HUMAN else ModelKind.OUTSIDE
+        return ModelInfo(self._name, kind, isolation=self._isolation)
 
     def complete(
         self, messages: Sequence[Message], tools: Sequence[ToolSchema], sampling: Sampling
