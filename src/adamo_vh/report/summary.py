@@ -65,7 +65,7 @@ KINDS = {
     ModelKind.RANDOM: "random player, no VLM",
     ModelKind.SCRIPTED: "scripted player, no VLM",
     ModelKind.REPLAY: "recorded answers, no live model",
-    ModelKind.HUMAN: "a person, no model",
+    ModelKind.HUMAN: "a person, no VLM",
     ModelKind.OUTSIDE: "a program from outside, which may be no VLM",
 }
 """What kind of player a model is, so that nobody takes one for another."""
