@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from adamo_vh.action import Code
@@ -37,7 +37,11 @@ class ReplayReport:
 
 
 def replay(
-    server: ActionServer, world: World, recorded: Trajectory, start: int = 0
+    server: ActionServer,
+    world: World,
+    recorded: Trajectory,
+    start: int = 0,
+    came: Callable[[Event], None] | None = None,
 ) -> ReplayReport:
     """Replay a trajectory.
 
@@ -46,6 +50,7 @@ def replay(
         world: Behind it; for what happened in it that its body did not do.
         recorded: What happened.
         start: Begin after this many steps, from the state that was saved there.
+        came: Is told of every event from there on, as soon as the world stands as after it.
 
     Raises:
         RecordError: There is no such step.
@@ -82,6 +87,8 @@ def replay(
             seen = frame or server.observe().observation.frame
             frames_differ += frame_name(seen) != event.frame
             frame = None
+        if came is not None:
+            came(event)
     return ReplayReport(len(acts) - start - cut, tuple(mismatches), frames_differ, cut)
 
 

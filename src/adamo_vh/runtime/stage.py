@@ -23,7 +23,7 @@ from adamo_vh.runtime.rendering import SceneRenderer
 from adamo_vh.runtime.world import CompiledWorld
 
 MOMENTS_PER_S = 15
-"""How often an action that is watched is shown."""
+"""How often an action that is watched is shown, unless whoever watches wants it otherwise."""
 _OFF_THE_WALL_M = 0.005
 """How near a held thing comes to a wall."""
 
@@ -42,6 +42,13 @@ class Stage:
         self._moment: BodyFrame | None = None
         self._last: tuple[object, Percept] | None = None
         self.watcher: Watcher | None = None
+        self.moments_per_s = MOMENTS_PER_S
+        """How often an action that is watched is shown."""
+
+    def watch(self, watcher: Watcher | None, moments_per_s: int = MOMENTS_PER_S) -> None:
+        """Be watched from now on, by one at a time; None ends it."""
+        self.watcher = watcher
+        self.moments_per_s = moments_per_s
 
     @property
     def renderer(self) -> SceneRenderer:
@@ -158,7 +165,7 @@ class Stage:
         motion = make()
         data = self._world.data
         kept = data.qpos.copy()
-        moments = np.arange(0.0, motion.duration_s, 1.0 / MOMENTS_PER_S)
+        moments = np.arange(0.0, motion.duration_s, 1.0 / self.moments_per_s)
         try:
             for seconds in (*moments.tolist(), motion.duration_s):
                 self._moment = motion.at(seconds)

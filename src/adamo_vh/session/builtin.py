@@ -136,6 +136,56 @@ def read_scene(file: str, variation: int = 0) -> Scene:
     return variation_of(file, variation)
 
 
+def scene_title(file: str) -> str:
+    """What a scene is called among people; empty if it cannot be read."""
+    from adamo_vh.runtime.scenes import load_scene
+
+    try:
+        return load_scene(file).title
+    except SceneError:
+        return ""
+
+
+def scene_glb(file: str, variation: int = 0) -> bytes:
+    """A whole scene as one GLB, with its objects where they come to rest.
+
+    Args:
+        file: Scene file or built-in name.
+        variation: 0 is the scene as it stands.
+
+    Raises:
+        SceneError: The scene is unknown or wrong.
+    """
+    from adamo_vh.runtime.human.looks import VARIANTS
+    from adamo_vh.runtime.scenes.glb import scene_glb as written
+    from adamo_vh.session.spare import engine_for
+
+    scene = read_scene(file, variation)
+    with engine_for(file, VARIANTS[0], variation) as engine:
+        engine.reset(0)
+        return written(scene, engine.state().objects).content
+
+
+def figure_glb(who: str) -> bytes:
+    """A figure as a skinned GLB with its clips.
+
+    Raises:
+        ConfigError: No figure has this name.
+    """
+    from adamo_vh.runtime.human.clips import clips
+    from adamo_vh.runtime.human.glb import figure_glb as written
+    from adamo_vh.runtime.human.looks import load_figure
+
+    return written(load_figure(who), clips())
+
+
+def figure_names() -> tuple[str, ...]:
+    """Who the virtual human can be; the first is the default."""
+    from adamo_vh.runtime.human.looks import VARIANTS
+
+    return VARIANTS
+
+
 def light_of(scene: Scene) -> str:
     """How bright a variation is, in a word: normal, low or high."""
     from adamo_vh.runtime.scenes.variation import light_preset

@@ -53,7 +53,7 @@ class FilmSet:
                 moment()
             return True
 
-        self.engine.stage.watcher = None if moment is None else watcher
+        self.engine.stage.watch(None if moment is None else watcher)
 
     def body(self) -> BodyState:
         """How the figure stands at this moment."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -21,10 +21,14 @@ from adamo_vh.errors import ConfigError, RecordError
 from adamo_vh.inference.model import Model
 from adamo_vh.perception import Tagger
 from adamo_vh.record.run_folder import RESULT
-from adamo_vh.record.trajectory import Observer, read_trajectory
+from adamo_vh.record.trajectory import Event, Observer, read_trajectory
 from adamo_vh.session.bodies import check_handed, open_server, opened
 from adamo_vh.session.parts import Parts
 from adamo_vh.session.session import Session, read_unfinished
+
+Watch = Callable[[World], Callable[[Event], None]]
+"""Is given the world before its record is executed again; what it gives back is told of every event
+as soon as it has come again."""
 
 
 def run_episode(
@@ -147,6 +151,7 @@ def replay_episode(
     engine: World | None = None,
     tools: Sequence[Tool] | None = None,
     labeling: Tagger | None = None,
+    watch: Watch | None = None,
 ) -> ReplayReport:
     """Execute a recorded episode again without its model and compare every state hash.
 
@@ -156,6 +161,7 @@ def replay_episode(
         engine: As when it was recorded; made from the record by default.
         tools: The body's primitives, as when it was recorded; those of the profile by default.
         labeling: As when it was recorded, if it was handed in.
+        watch: Looks on.
 
     Raises:
         RecordError: The folder holds no readable run, or has no such step, or it needs an engine
@@ -167,4 +173,6 @@ def replay_episode(
     check_handed(path, manifest, recorded, tools, labeling)
     with ExitStack() as stack:
         world = opened(stack, config, engine, (path, manifest))
-        return replay(open_server(config, world, tools, labeling), world, recorded, start)
+        server = open_server(config, world, tools, labeling)
+        came = None if watch is None else watch(world)
+        return replay(server, world, recorded, start, came)

@@ -122,7 +122,7 @@ def _made(place: _Place) -> _Spare:
 
 
 def _put_back(used: _Spare) -> None:
-    used.engine.stage.watcher = None
+    used.engine.stage.watch(None)
     with _lock:
         _spares.append(used)
         closing = _spares[:-_MOST]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import struct
@@ -12,9 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.runtime.assets.asset import Asset, Material, Part
+from adamo_vh.runtime.assets.atlas import roughness
 
-FLOAT, BYTE, SHORT, INT = 5126, 5121, 5123, 5125
+FLOAT, BYTE, SHORT, INT, SIGNED_BYTE = 5126, 5121, 5123, 5125, 5120
 VERTICES, INDICES = 34962, 34963
+_CLAMP, _REPEAT = 33071, 10497
+_TYPES = {FLOAT: "<f4", BYTE: "u1", SHORT: "<u2", INT: "<u4", SIGNED_BYTE: "i1"}
+_FULL = {BYTE: 255, SHORT: 65535, SIGNED_BYTE: 127}
+"""What stands for 1 where whole numbers stand for shares."""
 
 
 @dataclass(slots=True)
@@ -23,6 +29,8 @@ class GlbWriter:
 
     content: bytearray = field(default_factory=bytearray)
     json: dict[str, Any] = field(default_factory=dict)
+    textures: dict[tuple[str, bool], int] = field(default_factory=dict)
+    """Textures that are in it, by the digest of their picture and whether they repeat."""
 
     def add(self, key: str, item: dict[str, Any]) -> int:
         """Append to one of the top-level lists; returns its number."""
@@ -30,14 +38,16 @@ class GlbWriter:
         items.append(item)
         return len(items) - 1
 
-    def view(self, raw: bytes, target: int | None = None) -> int:
-        """Append bytes on a four-byte boundary."""
+    def view(self, raw: bytes, target: int | None = None, stride: int = 0) -> int:
+        """Append bytes on a four-byte boundary; a stride tells how far apart vertices are."""
         self.content.extend(b"\0" * (-len(self.content) % 4))
         view: dict[str, Any] = {
             "buffer": 0, "byteOffset": len(self.content), "byteLength": len(raw),
         }  # fmt: skip
         if target is not None:
             view["target"] = target
+        if stride:
+            view["byteStride"] = stride
         self.content.extend(raw)
         return self.add("bufferViews", view)
 
@@ -45,8 +55,7 @@ class GlbWriter:
         self, values: NDArray[Any], kind: str, code: int, target: int | None = None
     ) -> int:
         """Append an array; its bounds go with floats, as positions and times need them."""
-        types = {FLOAT: "<f4", BYTE: "u1", SHORT: "<u2", INT: "<u4"}
-        flat = np.ascontiguousarray(values, dtype=types[code])
+        flat = np.ascontiguousarray(values, dtype=_TYPES[code])
         item: dict[str, Any] = {
             "bufferView": self.view(flat.tobytes(), target),
             "componentType": code, "count": len(flat), "type": kind,
@@ -55,6 +64,54 @@ class GlbWriter:
             rows = flat.reshape(len(flat), -1)
             item["min"], item["max"] = rows.min(axis=0).tolist(), rows.max(axis=0).tolist()
         return self.add("accessors", item)
+
+    def shares(self, values: NDArray[Any], kind: str, code: int) -> int:
+        """Append an array of vertices' values, each a share of one, as whole numbers.
+
+        Args:
+            values: (N, width) in [0, 1], or in [-1, 1] for signed bytes.
+            kind: VEC2, VEC3 or VEC4.
+            code: BYTE, SHORT or SIGNED_BYTE.
+        """
+        count, width = values.shape
+        whole = np.rint(values * _FULL[code]).astype(_TYPES[code])
+        # Each vertex must begin on a four-byte boundary.
+        bytes_each = -(-width * whole.itemsize // 4) * 4
+        rows = np.zeros((count, bytes_each // whole.itemsize), whole.dtype)
+        rows[:, :width] = whole
+        item: dict[str, Any] = {
+            "bufferView": self.view(rows.tobytes(), VERTICES, bytes_each),
+            "componentType": code, "count": count, "type": kind, "normalized": True,
+        }  # fmt: skip
+        return self.add("accessors", item)
+
+    def texture(self, picture: NDArray[np.uint8], *, repeats: bool = False, jpeg: bool) -> int:
+        """Add a texture, once however often it is used.
+
+        Args:
+            picture: (H, W, 3) sRGB.
+            repeats: Whether it goes on beyond its edges.
+            jpeg: Much smaller, and not exact.
+        """
+        from PIL import Image
+
+        known = hashlib.sha256(f"{picture.shape}".encode() + picture.tobytes()).hexdigest(), repeats
+        if known not in self.textures:
+            content = io.BytesIO()
+            if jpeg:
+                Image.fromarray(picture).save(content, "JPEG", quality=85, subsampling=0)
+            else:
+                Image.fromarray(picture).save(content, "PNG", optimize=True)
+            mime = "image/jpeg" if jpeg else "image/png"
+            image = {"mimeType": mime, "bufferView": self.view(content.getvalue())}
+            wrap = _REPEAT if repeats else _CLAMP
+            sampler = {"magFilter": 9729, "minFilter": 9987, "wrapS": wrap, "wrapT": wrap}
+            samplers = self.json.setdefault("samplers", [])
+            if sampler not in samplers:
+                samplers.append(sampler)
+            texture = {"sampler": samplers.index(sampler), "source": self.add("images", image)}
+            self.textures[known] = self.add("textures", texture)
+        return self.textures[known]
 
     def file(self) -> bytes:
         """The finished GLB."""
@@ -74,34 +131,27 @@ class GlbWriter:
         )
 
 
-def add_material(writer: GlbWriter, material: Material) -> int:
-    """Add a rough, non-metallic material; its factor is linear, its texture stays sRGB."""
+def add_material(writer: GlbWriter, material: Material, *, repeats: bool = False) -> int:
+    """Add a rough, non-metallic material; its factor is linear, its texture stays sRGB.
+
+    Args:
+        writer: Takes it.
+        material: How a part reflects light.
+        repeats: Whether its picture goes on beyond its edges.
+    """
     red, green, blue, alpha = material.rgba
     surface: dict[str, Any] = {
         "baseColorFactor": [*(linear(c) for c in (red, green, blue)), alpha],
         "metallicFactor": 0.0,
-        "roughnessFactor": round(1.0 - 0.6 * material.shininess, 3),
+        "roughnessFactor": roughness(material),
     }
     if material.texture is not None:
-        surface["baseColorTexture"] = {"index": _add_texture(writer, material.texture)}
+        index = writer.texture(material.texture, repeats=repeats, jpeg=False)
+        surface["baseColorTexture"] = {"index": index}
     return writer.add(
         "materials",
         {"name": material.name, "pbrMetallicRoughness": surface, "doubleSided": True},
     )
-
-
-def _add_texture(writer: GlbWriter, picture: NDArray[np.uint8]) -> int:
-    from PIL import Image
-
-    if "samplers" not in writer.json:
-        writer.add(
-            "samplers", {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}
-        )
-    content = io.BytesIO()
-    Image.fromarray(picture).save(content, "PNG", optimize=True)
-    view = writer.view(content.getvalue())
-    source = writer.add("images", {"mimeType": "image/png", "bufferView": view})
-    return writer.add("textures", {"sampler": 0, "source": source})
 
 
 def linear(value: float) -> float:
@@ -129,8 +179,15 @@ def _primitive(writer: GlbWriter, part: Part) -> dict[str, Any]:
         "TEXCOORD_0": writer.accessor(part.uvs * [1, -1] + [0, 1], "VEC2", FLOAT, VERTICES),
     }
     indices = writer.accessor(part.faces.ravel(), "SCALAR", INT if wide else SHORT, INDICES)
-    material = add_material(writer, part.material)
+    material = add_material(writer, part.material, repeats=goes_beyond(part))
     return {"attributes": attributes, "indices": indices, "material": material}
+
+
+def goes_beyond(part: Part) -> bool:
+    """Whether a part has a picture, and shows it again beyond its edges."""
+    if part.material.texture is None:
+        return False
+    return bool(part.uvs.min() < -1e-3 or part.uvs.max() > 1.0 + 1e-3)
 
 
 def _y_up(vectors: NDArray[np.float32]) -> NDArray[np.float32]:

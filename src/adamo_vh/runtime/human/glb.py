@@ -33,10 +33,20 @@ _BODY_TO_GLTF = (-0.5, -0.5, -0.5, 0.5)
 
 
 def write_glb(path: Path, figure: Figure, clips: Iterable[Clip] = ()) -> None:
-    """Write a figure with its motions; three.js and others play the clips by name.
+    """Write a figure with its motions; see `figure_glb`.
 
     Args:
         path: Where to.
+        figure: The looks.
+        clips: Motions; they keep their names.
+    """
+    write_whole(path, figure_glb(figure, clips))
+
+
+def figure_glb(figure: Figure, clips: Iterable[Clip] = ()) -> bytes:
+    """A figure with its motions; three.js and others play the clips by name.
+
+    Args:
         figure: The looks.
         clips: Motions; they keep their names.
     """
@@ -52,7 +62,7 @@ def write_glb(path: Path, figure: Figure, clips: Iterable[Clip] = ()) -> None:
     writer.json["scenes"] = [{"name": figure.variant, "nodes": roots}]
     for clip in clips:
         _add_clip(writer, clip)
-    write_whole(path, writer.file())
+    return writer.file()
 
 
 def joint_node(joint: int) -> int:
