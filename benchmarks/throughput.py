@@ -116,8 +116,8 @@ def matrix() -> Sequence[Any]:
 
 def play_all(folder: Path, episodes: Sequence[Any]) -> Iterator[None]:
     """Play episodes one after the other, as a worker does with one in flight."""
+    from adamo_vh.session.pooling import Engines
     from adamo_vh.study.playing import play
-    from adamo_vh.study.workplace import Engines
 
     engines = Engines()
     for planned in episodes:

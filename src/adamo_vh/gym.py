@@ -5,7 +5,7 @@ Needs the extra `gym`. Where ADAMO is installed, Gymnasium knows the ids without
 
 from __future__ import annotations
 
-from adamo_vh.adapters.extras import needed
+from adamo_vh.extras import needed
 
 needed("gymnasium", "gym")
 

@@ -16,9 +16,9 @@ from adamo_vh.errors import ConfigError, EngineError
 from adamo_vh.record.termination import Limits
 from adamo_vh.service.app import serving
 from adamo_vh.service.hosting import Host, Terms
-from adamo_vh.service.sharing import Engines
 from adamo_vh.serving.admission import Rules
 from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.pooling import Engines
 
 JUDGE = "the-judge-of-these"
 

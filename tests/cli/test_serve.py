@@ -35,7 +35,7 @@ def _handlers() -> Iterator[None]:
 @pytest.fixture
 def in_lent_engine(lent: LentWorld, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "adamo_vh.service.sharing.create_engine", lambda *_: lent.lender.lend(), raising=True
+        "adamo_vh.session.pooling.create_engine", lambda *_: lent.lender.lend(), raising=True
     )
 
 

@@ -12,9 +12,9 @@ import pytest
 
 from adamo_vh.service.app import MAX_BODY_BYTES, serving
 from adamo_vh.service.hosting import Host, Terms
-from adamo_vh.service.sharing import Engines
 from adamo_vh.serving.admission import Rules
 from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.pooling import Engines
 
 JUDGE = "judge-of-the-tests"
 SMALL = Terms(resolution="320x180")

@@ -18,8 +18,8 @@ from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.report.page import PAGE
 from adamo_vh.service.hosting import Host, NoSessionError
-from adamo_vh.service.sharing import BusyError, Engines, place_of
 from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.pooling import BusyError, Engines
 
 MakeHost = Callable[..., Host]
 LOOK = Act("Look", {"x": 0.5, "y": -1.0, "z": 0.8})
@@ -164,20 +164,20 @@ def test_engines_are_shared_and_make_room(monkeypatch: pytest.MonkeyPatch, lent:
         def close(self) -> None:
             closed.append(self.place)
 
-    monkeypatch.setattr("adamo_vh.service.sharing.create_engine", lambda *place: Stub(place))
+    monkeypatch.setattr("adamo_vh.session.pooling.create_engine", lambda *place: Stub(place))
     config = read_config
     engines = Engines(most=2, ready={("s2", "mara", 0): lent.lender})
     assert engines.take(config(scene="s2")) is lent.lender
     one = engines.take(config())
     assert engines.take(config()) is one and made == [("s1", "mara", 0)]
-    engines.take(config(figure="ken"))
+    other = engines.take(config(figure="ken"))
     with pytest.raises(BusyError, match="2 scenes"):
         engines.take(config(figure="amina"))
-    engines.give_back(config(figure="ken"))
+    engines.give_back(other)
     engines.take(config(figure="amina"))
     assert closed == [("s1", "ken", 0)]
     engines.close()
-    assert len(closed) == 3 and place_of(config()) in closed
+    assert len(closed) == 3 and ("s1", "mara", 0) in closed
 
 
 def read_config(**more: Any) -> Any:

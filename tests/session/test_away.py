@@ -22,10 +22,10 @@ from adamo_vh.record.trajectory import Thought, Trajectory, read_trajectory
 from adamo_vh.service.app import serving
 from adamo_vh.service.hosting import Host, Terms
 from adamo_vh.service.judging import fetch_result
-from adamo_vh.service.sharing import Engines
 from adamo_vh.serving.admission import Rules
 from adamo_vh.session.away import AwaySession
 from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.pooling import Engines
 
 JUDGE = "the-judge-of-these"
 LOOK = ToolCall("c", "Look", {"x": 0.5, "y": -1.0, "z": 0.8})

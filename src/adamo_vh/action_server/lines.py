@@ -28,6 +28,7 @@ from adamo_vh.action_server.wire import (
     to_json,
 )
 from adamo_vh.errors import ConfigError, EngineError
+from adamo_vh.extras import missing
 from adamo_vh.observation import Frame
 from adamo_vh.serving.loopback import is_loopback
 
@@ -87,9 +88,7 @@ def open_line(url: str, token: str, transport: str, timeout_s: float) -> Line:
             return WebSocketLine(url, headers, timeout_s)
         except ImportError:
             if transport == "websocket":
-                raise ConfigError(
-                    "A WebSocket needs an extra package: pip install 'adamo-vh[serve]'."
-                ) from None
+                raise missing("serve", "A WebSocket", "websockets") from None
     return HttpLine(url, headers, timeout_s)
 
 

@@ -15,6 +15,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from adamo_vh.action import Feedback, ToolSchema
 from adamo_vh.action_server.protocol import ActionResult, Sighting
+from adamo_vh.engine import MOST_VARIATIONS
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Camera
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
@@ -58,7 +59,7 @@ class Create:
         Field(description="Single switches of the profile, set otherwise.", max_length=40),
     ] = None
     seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 0
-    variation: Annotated[int, Field(ge=0, le=100_000)] = 0
+    variation: Annotated[int, Field(ge=0, le=MOST_VARIATIONS)] = 0
     resolution: Annotated[
         str | None,
         Field(

@@ -12,7 +12,7 @@ from adamo_vh.cli.progress import Progress
 from adamo_vh.cli.terminal import complain, line
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.sealing import sign_run
-from adamo_vh.errors import ConfigError
+from adamo_vh.extras import extra
 from adamo_vh.record.signing import Signer
 from adamo_vh.record.trajectory import Observer
 
@@ -36,12 +36,8 @@ def play_and_show(
     Raises:
         ConfigError: A setting is wrong, or the extra `mcp` is missing.
     """
-    try:
+    with extra("mcp", "--agent-cmd"):
         from adamo_vh.service.agent.playing import FOLDER, Program, play_program
-    except ImportError as error:
-        raise ConfigError(
-            f"--agent-cmd needs an extra package ({error.name}): pip install 'adamo-vh[mcp]'."
-        ) from None
     signer = Signer(sign) if sign else None
     config = EpisodeConfig.of(instruction, **settings)
     observers: list[Observer] = [] if as_json else [Progress(Console())]

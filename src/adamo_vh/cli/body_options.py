@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from adamo_vh.serving.admission import JUDGE_VARIABLE, TOKEN_VARIABLE
+
 BodyUrl = Annotated[
     str | None,
     typer.Option(
@@ -16,11 +18,9 @@ BodyUrl = Annotated[
 ]
 BodyToken = Annotated[
     str,
-    typer.Option(help="What the server of --body asks of players.", envvar="ADAMO_VH_TOKEN"),
+    typer.Option(help="What the server of --body asks of players.", envvar=TOKEN_VARIABLE),
 ]
 JudgeToken = Annotated[
     str,
-    typer.Option(
-        help="Of the server of --body: print the result too.", envvar="ADAMO_VH_JUDGE_TOKEN"
-    ),
+    typer.Option(help="Of the server of --body: print the result too.", envvar=JUDGE_VARIABLE),
 ]

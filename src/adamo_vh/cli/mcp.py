@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from adamo_vh.cli.episode import RUNS
-from adamo_vh.errors import ConfigError
+from adamo_vh.extras import extra
 from adamo_vh.readable import readable
 from adamo_vh.record.run_folder import reserve
 
@@ -36,13 +36,9 @@ def serve(
     Raises:
         ConfigError: A setting is wrong, or the extra `mcp` is missing.
     """
-    try:
+    with extra("mcp", "MCP"):
         from adamo_vh.service.mcp.server import create_server
         from adamo_vh.service.mcp.transports import serve_http, serve_stdio
-    except ImportError as error:
-        raise ConfigError(
-            f"MCP needs an extra package ({error.name}): pip install 'adamo-vh[mcp]'."
-        ) from None
     from adamo_vh.service.mcp.episodes import Episodes
 
     offer = _offer(out, settings, most, idle_s)

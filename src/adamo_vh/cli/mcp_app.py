@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from adamo_vh.serving.admission import TOKEN_VARIABLE
+
 mcp_app = typer.Typer()
 
 
@@ -54,9 +56,7 @@ def mcp(
     ] = None,
     token: Annotated[
         str,
-        typer.Option(
-            help="What HTTP requests must bring as bearer token.", envvar="ADAMO_VH_TOKEN"
-        ),
+        typer.Option(help="What HTTP requests must bring as bearer token.", envvar=TOKEN_VARIABLE),
     ] = "",
     sessions: Annotated[int, typer.Option(help="Episodes at once.")] = 16,
     idle: Annotated[

@@ -13,6 +13,7 @@ from typing import Any
 from adamo_vh.cli.episode import RUNS
 from adamo_vh.cli.terminal import say
 from adamo_vh.errors import ConfigError
+from adamo_vh.extras import extra
 from adamo_vh.serving.admission import Rules
 from adamo_vh.serving.loopback import is_loopback
 
@@ -48,13 +49,9 @@ def serve(
     Raises:
         ConfigError: A setting is wrong, the port is taken, or the extra `serve` is missing.
     """
-    try:
+    with extra("serve", "The service"):
         from adamo_vh.service.app import FACES, MAX_BODY_BYTES, serving
         from adamo_vh.service.engines.face import dialled_engines, engine_face
-    except ImportError as error:
-        raise ConfigError(
-            f"The service needs an extra package ({error.name}): pip install 'adamo-vh[serve]'."
-        ) from None
     from adamo_vh.action_server.wire import Create
     from adamo_vh.service.engines.door import PATH, EngineDoor
     from adamo_vh.service.engines.page import PAGE, page_folder

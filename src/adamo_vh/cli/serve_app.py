@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from adamo_vh.serving.admission import JUDGE_VARIABLE, TOKEN_VARIABLE
+
 serve_app = typer.Typer()
 
 
@@ -27,13 +29,13 @@ def serve(
     port: Annotated[int, typer.Option(help="Port; 0 for a free one.")] = 8000,
     token: Annotated[
         str,
-        typer.Option(help="What players must bring; new to make one up.", envvar="ADAMO_VH_TOKEN"),
+        typer.Option(help="What players must bring; new to make one up.", envvar=TOKEN_VARIABLE),
     ] = "",
     judge: Annotated[
         str,
         typer.Option(
             help="What a judge brings, to be told state, score and result; new to make one up.",
-            envvar="ADAMO_VH_JUDGE_TOKEN",
+            envvar=JUDGE_VARIABLE,
         ),
     ] = "",
     allow_host: Annotated[

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from adamo_vh.errors import ConfigError
+from adamo_vh.extras import extra
 from adamo_vh.inference.model import Model
 from adamo_vh.inference.registry import create_local_model
 from adamo_vh.model_server.fault_rules import Faults, load_faults
@@ -64,13 +65,9 @@ def serve_model(
         ConfigError: A setting is wrong, the port is taken, or the extra `serve` is missing.
         ModelConfigError: The model is unknown.
     """
-    try:
+    with extra("serve", "Serving a model"):
         from adamo_vh.model_server.broken_connections import CuttableProtocol
         from adamo_vh.model_server.openai_endpoint import MAX_BODY_BYTES, Service, create_app
-    except ImportError as error:
-        raise ConfigError(
-            f"Serving a model needs an extra package ({error.name}): pip install 'adamo-vh[serve]'."
-        ) from None
     rules = faults if isinstance(faults, Faults) else load_faults(faults) if faults else Faults()
     limit = MAX_BODY_BYTES if max_body_bytes is None else max_body_bytes
     with listen(host, port) as opened:

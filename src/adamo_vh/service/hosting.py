@@ -23,10 +23,11 @@ from adamo_vh.readable import readable
 from adamo_vh.record.run_folder import reserve
 from adamo_vh.record.termination import Limits
 from adamo_vh.service.hosted import Hosted
-from adamo_vh.service.sharing import BusyError, Engines
 from adamo_vh.service.watching import Watch
 from adamo_vh.session.builtin import scene_names
 from adamo_vh.session.driven import DrivenBody
+from adamo_vh.session.lending import Lender
+from adamo_vh.session.pooling import BusyError, Engines, server_engines
 
 _SWEEP_S = 5.0
 _REMEMBERED = 1_000
@@ -68,9 +69,11 @@ class Host:
         """
         self.terms = terms
         self.out = out
-        self.engines = engines or Engines()
+        self.engines = engines or server_engines()
         """Where the sessions are played, those of every face."""
         self._sessions: dict[str, Hosted] = {}
+        self._lenders: dict[str, Lender] = {}
+        """Where each session is played."""
         self._folders: OrderedDict[str, Path] = OrderedDict()
         """Run folders of the sessions that were closed, for a judge."""
         self._begun_for: OrderedDict[str, str] = OrderedDict()
@@ -120,8 +123,7 @@ class Host:
             SceneError: The scene is wrong.
         """
         config = self._config(asked)
-        self.engines.take(config)
-        self.engines.give_back(config)
+        self.engines.give_back(self.engines.take(config))
 
     def _begun(self, config: EpisodeConfig, player: str) -> Hosted:
         name = secrets.token_urlsafe(12)
@@ -135,8 +137,9 @@ class Host:
                 config, folder, player=player, lender=lender, observers=(watch,)
             )
         except BaseException:
-            self.engines.give_back(config)
+            self.engines.give_back(lender)
             raise
+        self._lenders[name] = lender
         return Hosted(name, body, watch)
 
     def _config(self, asked: Create) -> EpisodeConfig:
@@ -209,7 +212,7 @@ class Host:
         try:
             hosted.close()
         finally:
-            self.engines.give_back(hosted.body.config)
+            self.engines.give_back(self._lenders.pop(name))
 
     def close_all(self) -> None:
         """Close every session, and the engines: every record is whole, and can be shown."""

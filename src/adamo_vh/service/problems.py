@@ -12,7 +12,7 @@ from adamo_vh.errors import (
     SceneError,
 )
 from adamo_vh.service.hosting import NoSessionError
-from adamo_vh.service.sharing import BusyError
+from adamo_vh.session.pooling import BusyError
 
 
 class JudgeOnlyError(AdamoError):

@@ -17,6 +17,10 @@ from urllib.parse import urlsplit
 from adamo_vh.serving.loopback import is_loopback
 from adamo_vh.serving.rate import Rate
 
+TOKEN_VARIABLE = "ADAMO_VH_TOKEN"
+"""Environment variable with what players, agents and engines bring, or must bring."""
+JUDGE_VARIABLE = "ADAMO_VH_JUDGE_TOKEN"
+"""The same for a judge."""
 WITH_BODY = ("POST", "PUT", "PATCH")
 _MAX_TARGET_BYTES = 8_000
 _MAX_HEADERS = 100

@@ -31,12 +31,12 @@ from adamo_vh.observation import Frame
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Event
 from adamo_vh.session.minds import model_of
+from adamo_vh.session.pooling import Engines
 from adamo_vh.study.executor import Failed, Finished, Noted, Report
 from adamo_vh.study.ledger import Purse, StudyLedger, budgeted
 from adamo_vh.study.limiter import LIMITS, Limiter, Rates
 from adamo_vh.study.plan import Planned
 from adamo_vh.study.playing import play
-from adamo_vh.study.workplace import Engines
 
 BEAT_S = 2.0
 """Seconds between two signs of life."""

@@ -25,7 +25,7 @@ from adamo_vh.service.engines.dialing import dial
 from adamo_vh.service.engines.door import EngineDoor
 from adamo_vh.service.engines.face import dialled_engines, engine_face
 from adamo_vh.service.hosting import Host, Terms
-from adamo_vh.service.sharing import BusyError
+from adamo_vh.session.pooling import BusyError
 
 
 @contextmanager

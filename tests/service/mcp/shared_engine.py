@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from adamo_vh.service.sharing import Engines
 from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.pooling import Engines
 
 
 def engines_of(lent: LentWorld) -> Engines:

@@ -16,8 +16,8 @@ from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.service.mcp.episodes import Episodes
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.service.mcp.prompts import render
-from adamo_vh.service.sharing import BusyError, Engines
 from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.pooling import BusyError, Engines
 from adamo_vh.session.runs import run_episode
 
 GOLDEN = Path(__file__).parent / "golden"

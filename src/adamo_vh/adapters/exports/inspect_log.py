@@ -17,9 +17,9 @@ from typing import Any
 from adamo_vh.adapters.exports.dialogue import dialogue
 from adamo_vh.adapters.exports.form import Form
 from adamo_vh.adapters.exports.recorded import Episode
-from adamo_vh.adapters.extras import needed
 from adamo_vh.adapters.inspect.conversation import chat, spent_on
 from adamo_vh.adapters.inspect.scoring import score_of
+from adamo_vh.extras import needed
 from adamo_vh.inference.messages import Message, pictures_of
 from adamo_vh.study.axes import slug
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from adamo_vh.adapters.exports.form import Form
 from adamo_vh.adapters.exports.recorded import Episode
-from adamo_vh.adapters.extras import needed
+from adamo_vh.extras import needed
 from adamo_vh.files import make_folder, naming, write_whole
 from adamo_vh.record.trajectory import Observed, Shown
 from adamo_vh.report.timeline import Deed, ShownTurn, turns

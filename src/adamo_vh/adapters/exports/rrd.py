@@ -13,9 +13,9 @@ from typing import Any
 
 from adamo_vh.adapters.exports.form import Form
 from adamo_vh.adapters.exports.recorded import Episode
-from adamo_vh.adapters.extras import needed
 from adamo_vh.engine import WorldState
 from adamo_vh.errors import RecordError
+from adamo_vh.extras import needed
 from adamo_vh.files import make_folder
 from adamo_vh.geometry import Vec3
 from adamo_vh.observation import AgentState

@@ -35,7 +35,7 @@ from adamo_vh.record.run_folder import reserve
 from adamo_vh.record.turn import FINISH
 from adamo_vh.session.bodies import tools_for
 from adamo_vh.session.driven import DrivenBody
-from adamo_vh.study.workplace import process_engines
+from adamo_vh.session.pooling import process_engines
 
 _PLAYER = "gymnasium"
 _LONGEST_S = 1e9

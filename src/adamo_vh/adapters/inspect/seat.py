@@ -18,7 +18,7 @@ from adamo_vh.inference.messages import HumanMessage, ImagePart, SystemMessage, 
 from adamo_vh.observation import Frame
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.session.driven import DrivenBody
-from adamo_vh.study.workplace import process_engines
+from adamo_vh.session.pooling import process_engines
 
 if TYPE_CHECKING:
     from inspect_ai.model import ChatMessage, Content, ModelOutput

@@ -33,10 +33,10 @@ from adamo_vh.episode.result import EpisodeResult
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import Sampling
 from adamo_vh.record.run_folder import reserve
+from adamo_vh.session.pooling import process_engines
 from adamo_vh.session.session import Session
 from adamo_vh.study.plan import Planned, plan, seed_of
 from adamo_vh.study.study_file import read_study
-from adamo_vh.study.workplace import process_engines
 
 _ANY_MODEL = "random"
 """Stands for the model in the plan, which Inspect names."""

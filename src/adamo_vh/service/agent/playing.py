@@ -29,8 +29,8 @@ from adamo_vh.service.mcp.episodes import Episodes, Watch
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.service.mcp.server import create_server
 from adamo_vh.service.mcp.transports import PATH, serve_http, serve_socket
-from adamo_vh.service.sharing import Engines
 from adamo_vh.session.outside import OutsideEpisode
+from adamo_vh.session.pooling import Engines
 
 FOLDER, RECORD = "agent", "agent.json"
 """In the run folder: what the program wrote, and how it was run."""

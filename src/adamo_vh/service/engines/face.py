@@ -10,7 +10,7 @@ from adamo_vh.service.app import Face
 from adamo_vh.service.engines.door import MOST_ENGINES, PATH, EngineDoor
 from adamo_vh.service.engines.reading import MAX_BINARY
 from adamo_vh.service.engines.remote import RemoteWorld
-from adamo_vh.service.sharing import BusyError, Engines
+from adamo_vh.session.pooling import BusyError, Engines
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -52,4 +52,4 @@ def dialled_engines(door: EngineDoor) -> Engines:
             raise
         return world
 
-    return Engines(most=MOST_ENGINES, make=made)
+    return Engines(MOST_ENGINES, MOST_ENGINES, make=made)

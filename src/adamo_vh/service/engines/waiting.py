@@ -11,15 +11,13 @@ from adamo_vh.service.engines.line import ANSWER_S
 from adamo_vh.service.engines.page import PAGE, page_folder
 from adamo_vh.service.engines.reading import MAX_BINARY
 from adamo_vh.service.engines.remote import RemoteWorld
-from adamo_vh.serving.admission import Rules
+from adamo_vh.serving.admission import TOKEN_VARIABLE, Rules
 from adamo_vh.serving.edge import Edge
 from adamo_vh.serving.loopback import listen
 from adamo_vh.serving.rate import Rate
 from adamo_vh.serving.running import running
 
 PORT = 8020
-TOKEN = "ADAMO_VH_TOKEN"
-"""Environment variable with the token that an engine must bring; none is asked for without."""
 WAIT_S = 600.0
 
 
@@ -47,7 +45,7 @@ def dialled_in(
         ConfigError: The port is taken, or the page is missing.
         EngineError: No engine dialled in, or it failed, or does not have the scene.
     """
-    token = os.environ.get(TOKEN, "")
+    token = os.environ.get(TOKEN_VARIABLE, "")
     # An engine only answers what it is asked: that is its rate.
     rules = Rules(1000, token=token, rate=Rate(per_s=0), max_message_bytes=MAX_BINARY)
     page = page_folder(os.environ.get(PAGE, ""))

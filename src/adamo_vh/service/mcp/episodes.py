@@ -17,9 +17,9 @@ from adamo_vh.inference.model import ModelKind
 from adamo_vh.record.run_folder import FRAMES, MANIFEST, RESULT, SCENE, reserve
 from adamo_vh.record.trajectory import Observer, frame_type
 from adamo_vh.service.mcp.offer import Offer
-from adamo_vh.service.sharing import Engines
 from adamo_vh.session.lending import LentWorld
 from adamo_vh.session.outside import OutsideEpisode
+from adamo_vh.session.pooling import Engines, server_engines
 from adamo_vh.session.session import read_unfinished
 
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
@@ -50,7 +50,7 @@ class Episodes:
         """
         self.offer = offer
         self._watch = watch
-        self._engines = engines or Engines()
+        self._engines = engines or server_engines()
         self._has_own_engines = engines is None
         self._observers = observers
         self._lock = threading.RLock()
@@ -171,8 +171,7 @@ class Episodes:
         with ExitStack() as stack:
             # A folder that holds nothing is no episode.
             stack.callback(_remove_empty, folder)
-            lent = self._engines.take(config).lend()
-            stack.callback(self._engines.give_back, config)
+            lent = self._lent(stack, config)
             self._live[folder.name] = episode = OutsideEpisode.begin(
                 config,
                 folder,
@@ -190,10 +189,18 @@ class Episodes:
         # With its own scene in the folder, it is that one whatever is drawn for its number today.
         config = read_manifest(folder).config
         own = (folder / SCENE).is_file()
-        lent = None if own else self._engines.take(config).lend()
-        done = self._done(folder, config, lent)
-        self._live[folder.name] = OutsideEpisode.resume(folder, engine=lent, done=done)
+        with ExitStack() as stack:
+            lent = None if own else self._lent(stack, config)
+            done = self._done(folder, config, lent)
+            self._live[folder.name] = OutsideEpisode.resume(folder, engine=lent, done=done)
+            stack.pop_all()
         return self._live[folder.name]
+
+    def _lent(self, stack: ExitStack, config: EpisodeConfig) -> LentWorld:
+        """A world for an episode, given back if it does not begin."""
+        lender = self._engines.take(config)
+        stack.callback(self._engines.give_back, lender)
+        return lender.lend()
 
     def _done(
         self, folder: Path, config: EpisodeConfig, lent: LentWorld | None
@@ -203,7 +210,7 @@ class Episodes:
         def done(episode: OutsideEpisode) -> None:
             if lent is not None:
                 lent.close()
-                self._engines.give_back(config)
+                self._engines.give_back(lent.lender)
             with self._lock:
                 del self._live[folder.name]
             try:

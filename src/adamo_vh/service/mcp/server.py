@@ -20,8 +20,8 @@ from adamo_vh.service.mcp.episodes import Episodes, Watch
 from adamo_vh.service.mcp.offer import ANSWER, END, EPISODE, INSTRUCTIONS, LONGEST, LOOK_AGAIN, NEW
 from adamo_vh.service.mcp.prompts import render
 from adamo_vh.service.mcp.shown import content, instructions, instructions_uri, read_uri, text
-from adamo_vh.service.sharing import BusyError
 from adamo_vh.session.outside import ENDED, OutsideEpisode
+from adamo_vh.session.pooling import BusyError
 
 _T = TypeVar("_T")
 Context = ServerRequestContext[Any, Any]

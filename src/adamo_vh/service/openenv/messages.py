@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar, cast
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
+from adamo_vh.engine import MOST_VARIATIONS
 from adamo_vh.errors import ConfigError
 from adamo_vh.readable import readable
 
@@ -40,7 +41,7 @@ class Reset:
     profile: Literal["paper", "paper-exact", "lean", "single"] | None = None
     resolution: _Name | None = None
     """WIDTHxHEIGHT."""
-    variation: Annotated[int, Field(ge=0, le=100_000)] = 0
+    variation: Annotated[int, Field(ge=0, le=MOST_VARIATIONS)] = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,8 +30,8 @@ from adamo_vh.service.openenv.messages import (
     Told,
     plain,
 )
-from adamo_vh.service.sharing import BusyError
 from adamo_vh.session.bodies import tools_for
+from adamo_vh.session.pooling import BusyError
 
 OBSERVE = "observe"
 """The tool that looks again without doing anything."""

@@ -13,8 +13,8 @@ from adamo_vh.engine import acting_body
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import SceneError
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.study import workplace
-from adamo_vh.study.workplace import Engines
+from adamo_vh.session import pooling
+from adamo_vh.session.pooling import Engines
 
 S1 = EpisodeConfig("Look")
 
@@ -43,7 +43,7 @@ def made(engine: BuiltinEngine, monkeypatch: pytest.MonkeyPatch) -> list[Made]:
         engines.append(Made(engine))
         return engines[-1]
 
-    monkeypatch.setattr(workplace, "create_engine", create)
+    monkeypatch.setattr(pooling, "create_engine", create)
     return engines
 
 
