@@ -7,10 +7,14 @@ BIN := $(VENV)/bin
 WORKERS ?= 2
 PYTEST_FLAGS ?=
 DEMO := runs/demo
+# Neighbours stay in one worker, which makes their rooms once; who is done takes from the other.
+PYTEST := $(BIN)/pytest -n $(WORKERS) --dist worksteal
 
 export VENV
 # Silences a notice about the future of mkdocs.
 export NO_MKDOCS_2_WARNING = 1
+# Tests start many processes: what one of them has compiled is read by the next.
+export PYTHONDONTWRITEBYTECODE =
 ifdef PYTHON
 export PYTHON
 endif
@@ -31,10 +35,10 @@ demo: $(VENV)/.package $(VENV)/.gl ## Watch the built-in baseline carry out an i
 	@find $(CURDIR)/$(DEMO) -name '*.html' -exec printf '\nOpen in a browser: %s\n' {} +
 
 test: $(VENV)/.dev $(VENV)/.gl ## Run the tests, without the slow ones
-	@$(BIN)/pytest -n $(WORKERS) -m "not slow and not extras" $(PYTEST_FLAGS)
+	@$(PYTEST) -m "not slow and not extras" $(PYTEST_FLAGS)
 
 test-all: $(VENV)/.dev $(VENV)/.gl ## Run all tests
-	@ADAMO_VH_EXPLORE=1 $(BIN)/pytest -n $(WORKERS) -m "not extras" $(PYTEST_FLAGS)
+	@ADAMO_VH_EXPLORE=1 $(PYTEST) -m "not extras" $(PYTEST_FLAGS)
 
 test-extras: $(EXTRAS)/.extras ## Run the tests of large extras, in an environment of their own
 	@$(EXTRAS)/bin/pytest -m extras $(PYTEST_FLAGS) $$(grep -rl --include="*.py" "mark\.extras" tests)

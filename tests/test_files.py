@@ -20,6 +20,7 @@ from adamo_vh.files import (
     CACHE_DIR,
     append_line,
     cache_folder,
+    check_place,
     parse_json,
     parse_toml,
     read_json,
@@ -248,3 +249,14 @@ def test_json_from_anywhere_is_read_as_strictly_as_a_file() -> None:
     ):
         with pytest.raises(ValueError, match=told):
             parse_json(text)
+
+
+def test_a_place_is_looked_at_before_the_work_that_is_to_fill_it(tmp_path: Path) -> None:
+    check_place(tmp_path)
+    check_place(tmp_path / "a" / "b")
+    assert os.listdir(tmp_path) == [], "nothing is made"
+    (tmp_path / "file").touch()
+    (tmp_path / "loop").symlink_to("loop")
+    for wrong in ("file", "file/below", "file/below/it", "x" * 300, f"{'x' * 300}/y", "loop/y"):
+        with pytest.raises(FileError, match="cannot be written"):
+            check_place(tmp_path / wrong)

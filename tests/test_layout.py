@@ -8,6 +8,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from statistics import median
 
@@ -16,7 +17,6 @@ import pytest
 SRC = Path(__file__).resolve().parents[1] / "src"
 TESTS = Path(__file__).resolve().parent
 MODULES = {path.relative_to(SRC).as_posix(): path for path in sorted(SRC.rglob("*.py"))}
-TREES = {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in MODULES.items()}
 LENGTHS = {
     name: len(path.read_text(encoding="utf-8").splitlines()) for name, path in MODULES.items()
 }
@@ -29,6 +29,12 @@ EXTRAS = {"inspect_ai"}
 """Libraries of extras, which modules that nothing else imports may rest on."""
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@cache
+def _trees() -> dict[str, ast.Module]:
+    """Each module, parsed."""
+    return {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in MODULES.items()}
 
 
 def _run_at_import(node: ast.AST) -> Iterator[ast.AST]:
@@ -72,7 +78,7 @@ def _first_line(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
 def test_a_function_fits_on_one_screen() -> None:
     lengths = {
         f"{name}:{node.lineno} {node.name}": (node.end_lineno or 0) - _first_line(node) + 1
-        for name, tree in TREES.items()
+        for name, tree in _trees().items()
         for node in ast.walk(tree)
         if isinstance(node, Function)
     }
@@ -87,7 +93,7 @@ def _parameters(node: Function) -> int:
 def test_a_call_can_be_read_at_a_glance() -> None:
     counts = {
         f"{name}:{node.lineno} {node.name}": _parameters(node)
-        for name, tree in TREES.items()
+        for name, tree in _trees().items()
         if not name.startswith("adamo_vh/cli/")  # There every option of a command is one.
         for node in ast.walk(tree)
         if isinstance(node, Function)
@@ -111,13 +117,13 @@ def test_a_module_is_named_after_what_it_holds() -> None:
 
 
 def test_a_module_says_what_it_is_for() -> None:
-    assert [name for name, tree in TREES.items() if not ast.get_docstring(tree)] == []
+    assert [name for name, tree in _trees().items() if not ast.get_docstring(tree)] == []
 
 
 def test_importing_a_module_imports_nothing_heavy() -> None:
     named = {
         f"{name}:{getattr(node, 'lineno', 0)}": _imported(node) & HEAVY
-        for name, tree in TREES.items()
+        for name, tree in _trees().items()
         for node in _run_at_import(tree)
     }
     assert {where: heavy for where, heavy in named.items() if heavy} == {}

@@ -10,6 +10,7 @@ import errno
 import json
 import os
 import re
+import stat
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -84,6 +85,22 @@ def make_folder(path: Path) -> Path:
     with naming("written", path):
         path.mkdir(parents=True, exist_ok=True)
     return path
+
+
+def check_place(path: Path) -> None:
+    """See, before the work that is to fill it, whether a folder can be made or written to.
+
+    Raises:
+        FileError: It cannot; nothing was made.
+    """
+    with naming("written", path):
+        for place in (path, *path.parents):
+            with suppress(FileNotFoundError):
+                if not stat.S_ISDIR(place.stat().st_mode):
+                    raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
+                if not os.access(place, os.W_OK):
+                    raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+                return
 
 
 def write_whole(path: Path, data: bytes, *, durable: bool = False) -> Path:

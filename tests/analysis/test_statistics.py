@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from adamo_vh.analysis.statistics import (
     agreement,
@@ -22,6 +21,8 @@ shares = st.floats(0.0, 1.0)
 
 
 def test_one_group_gives_the_t_interval_that_scipy_gives() -> None:
+    from scipy import stats
+
     values = [0.2, 0.9, 0.4, 0.7, 0.5, 0.6, 0.3, 0.8, 0.45, 0.55, 0.35, 0.65] * 3
     found = interval([values], sum(values) / len(values))
     low, high = stats.t.interval(
@@ -111,6 +112,8 @@ def test_pass_hat_is_unbiased() -> None:
 
 
 def test_ranks_go_with_scipy() -> None:
+    from scipy import stats
+
     levels, values = [1, 2, 2, 4, 5, 6], [1.0, 0.9, 1.0, 0.5, 0.6, 0.1]
     found = rank_correlation(levels, values)
     expected = stats.spearmanr(levels, values)

@@ -1,22 +1,27 @@
-"""Runs `adamo-vh` as people do: as a process of its own, whose streams are bytes.
+"""Runs `adamo-vh` as people do: with words, a place and streams of bytes, to an exit code.
 
-It is forked from one that has done the imports, which take longer than most commands. Where flags
-of Python or the environment at its start matter, it is started as people start it.
+Most commands run in the process of the test, which has done the imports, and whose engines are at
+hand: both take longer than most commands. Where flags of Python or the environment at its start
+matter, a command gets a process of its own.
 """
 
 from __future__ import annotations
 
-import atexit
+import io
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
+
+from adamo_vh.cli import main
 
 SMALL = ("--resolution", "640x360")
 
@@ -51,7 +56,7 @@ def adamo(
         environment: Variables set otherwise.
     """
     if not (flags or environment):
-        return _forked(arguments, cwd, said)
+        return _here(arguments, cwd, said)
     command = [sys.executable, *flags.split(), "-m", "adamo_vh", *arguments]
     done = subprocess.run(
         command,
@@ -70,91 +75,39 @@ def _done(code: int, out: bytes, err: bytes) -> Done:
     return Done(code, printed, complained)
 
 
-_PARENT = """
-import atexit, importlib, io, json, os, sys
-for name in sys.argv[1].split():
-    importlib.import_module(name)
-for line in sys.stdin:
-    words, cwd, environment, streams = json.loads(line)
-    child = os.fork()
-    if child == 0:
-        for number, path in enumerate(streams):
-            os.dup2(os.open(path, os.O_WRONLY if number else os.O_RDONLY), number)
-        sys.stdin = io.TextIOWrapper(open(0, "rb", closefd=False), "utf-8")
-        sys.stdout = io.TextIOWrapper(open(1, "wb", closefd=False), "utf-8")
-        sys.stderr = io.TextIOWrapper(open(2, "wb", closefd=False), "utf-8", "backslashreplace")
-        os.chdir(cwd)
-        os.environ.clear()
-        os.environ.update(environment)
-        sys.argv = ["adamo-vh", *words]
-        code = 70
+def _here(arguments: Sequence[str | bytes], cwd: Path, said: bytes) -> Done:
+    kept = (sys.argv, sys.stdin, sys.stdout, sys.stderr)
+    place, environment = Path.cwd(), dict(os.environ)
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    with ExitStack() as stack:
+        stack.enter_context(warnings.catch_warnings())
+        streams = [stack.enter_context(tempfile.TemporaryFile()) for _ in range(3)]
+        streams[0].write(said)
+        streams[0].seek(0)
+        code = 0
         try:
-            from adamo_vh.cli import main
+            os.chdir(cwd)
+            sys.argv = ["adamo-vh", *(os.fsdecode(word) for word in arguments)]
+            texts = [io.TextIOWrapper(stream, "utf-8", write_through=True) for stream in streams]
+            sys.stdin, sys.stdout, sys.stderr = texts
             main()
         except SystemExit as end:
             code = int(end.code or 0)
-        except BaseException:
-            import traceback
-            traceback.print_exc()
         finally:
-            atexit._run_exitfuncs()
-            for stream in (sys.stdout, sys.stderr):
-                stream.flush()
-            os._exit(code)
-    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
-"""
-_IMPORTED = (
-    "numpy cv2 PIL.Image pydantic typer rich.console jinja2 adamo_vh.cli.app adamo_vh.session.runs "
-    "adamo_vh.report.page adamo_vh.runtime.scenes.scene adamo_vh.runtime.human.looks"
-)
-"""What most commands import; nothing that draws, since no drawing survives a fork."""
-
-
-@cache
-def _parent() -> subprocess.Popen[str]:
-    """A process that has done the imports, and forks into one that carries out a command."""
-    command = [sys.executable, "-c", _PARENT, _IMPORTED]
-    parent = subprocess.Popen(command, stdin=-1, stdout=-1, text=True)
-    atexit.register(parent.kill)
-    return parent
-
-
-def _forked(arguments: Sequence[str | bytes], cwd: Path, said: bytes) -> Done:
-    parent = _parent()
-    assert parent.stdin and parent.stdout
-    with tempfile.TemporaryDirectory() as folder:
-        streams = [Path(folder, name) for name in ("in", "out", "err")]
-        for path in streams:
-            path.write_bytes(said if path.name == "in" else b"")
-        words = [os.fsdecode(word) for word in arguments]
-        told = (words, str(cwd), dict(os.environ), [str(path) for path in streams])
-        print(json.dumps(told), file=parent.stdin, flush=True)
-        code = int(parent.stdout.readline())
-        return _done(code, streams[1].read_bytes(), streams[2].read_bytes())
-
-
-_ONE_PROCESS = """
-import contextlib, io, json, sys
-from adamo_vh.cli import _run
-for words in json.load(sys.stdin):
-    sys.argv, sys.stdin = ["adamo-vh", *words], io.StringIO("hi")
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        code = int(_run())
-    print(json.dumps([code, out.getvalue(), err.getvalue()]), flush=True)
-"""
+            sys.argv, sys.stdin, sys.stdout, sys.stderr = kept
+            os.chdir(place)
+            for name in {*os.environ} - {*environment}:
+                del os.environ[name]
+            os.environ.update(environment)
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
+        out, err = (os.pread(stream.fileno(), 1 << 26, 0) for stream in streams[1:])
+        return _done(code, out, err)
 
 
 def walk(commands: Sequence[Sequence[str]], *, cwd: Path) -> list[Done]:
-    """Run many commands one after another in one process, which takes a tenth of the time."""
-    told = subprocess.run(
-        [sys.executable, "-c", _ONE_PROCESS],
-        input=json.dumps(commands).encode(),
-        stdout=-1,
-        cwd=cwd,
-        check=True,
-    )
-    return [Done(*json.loads(line)) for line in told.stdout.splitlines()]
+    """Run many commands, one after another; each is told "hi" by its standard input."""
+    return [adamo(*words, cwd=cwd, said=b"hi") for words in commands]
 
 
 def script(folder: Path, *entries: dict[str, Any]) -> str:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from tests.cli.process import walk
+from tests.cli.process import adamo, walk
 
 from adamo_vh.benchmark.tasks.reading import read_task
 
@@ -20,20 +18,13 @@ conditions = [{ on_floor = 45 }]
 """
 
 
-def run(*arguments: str) -> tuple[int, str, str]:
-    done = subprocess.run(
-        [sys.executable, "-m", "adamo_vh", *arguments], capture_output=True, text=True, check=False
-    )
-    return done.returncode, done.stdout, done.stderr
-
-
 def test_a_sound_task(tmp_path: Path) -> None:
     path = tmp_path / "cup.toml"
     path.write_text(GOOD)
     check = ("tasks", "check", str(path), "--scene", "s1", "--random", "2", "--json")
-    code, out, _ = run(*check)
-    told = json.loads(out)
-    assert (code, told["task"], told["sound"]) == (0, "CUP", True)
+    done = adamo(*check, cwd=tmp_path)
+    told = json.loads(done.out)
+    assert (done.code, told["task"], told["sound"]) == (0, "CUP", True)
     assert [(row["scene"], row["labeling"]) for row in told["scenes"]] == [
         ("s1", "sem"), ("s1", "opaq"),
     ]  # fmt: skip
@@ -43,10 +34,11 @@ def test_a_sound_task(tmp_path: Path) -> None:
 def test_an_unsound_task(tmp_path: Path) -> None:
     path = tmp_path / "cup.toml"
     path.write_text(GOOD.replace("on_floor = 45", 'on = { object = 45, surface = "table" }'))
-    code, out, _ = run("tasks", "check", str(path), "--scene", "s1", "--random", "0")
-    assert code == 1
-    assert "FAIL s1 sem" in out
-    assert "is so at the start: 45 on table" in out
+    check = ("tasks", "check", str(path), "--scene", "s1", "--random", "0")
+    done = adamo(*check, cwd=tmp_path)
+    assert done.code == 1
+    assert "FAIL s1 sem" in done.out
+    assert "is so at the start: 45 on table" in done.out
 
 
 @pytest.mark.parametrize(
@@ -59,9 +51,9 @@ def test_an_unsound_task(tmp_path: Path) -> None:
 def test_a_wrong_file_is_one_line(tmp_path: Path, text: str, told: str) -> None:
     path = tmp_path / "cup.toml"
     path.write_text(text)
-    code, out, err = run("tasks", "check", str(path))
-    assert (code, out) == (2, "")
-    assert told in err and len(err.strip().splitlines()) == 1
+    done = adamo("tasks", "check", str(path), cwd=tmp_path)
+    assert (done.code, done.out) == (2, "")
+    assert told in done.err and len(done.err.strip().splitlines()) == 1
 
 
 def test_tasks_are_generated_into_files(tmp_path: Path) -> None:

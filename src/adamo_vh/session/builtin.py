@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from adamo_vh.errors import RenderingError, SceneError
-from adamo_vh.files import write_whole
+from adamo_vh.files import check_place, write_whole
 from adamo_vh.plugins import ENGINES, plugin_names
 
 if TYPE_CHECKING:
@@ -247,11 +247,13 @@ def write_figure(file: Path, who: str) -> str:
 
     Raises:
         ConfigError: No figure has this name.
+        FileError: It cannot be written there.
     """
     from adamo_vh.runtime.human.clips import clips
     from adamo_vh.runtime.human.glb import write_glb
     from adamo_vh.runtime.human.looks import load_figure
 
+    check_place(file.parent)
     figure, motions = load_figure(who), clips()
     write_glb(file, figure, motions)
     names = ", ".join(clip.name for clip in motions)

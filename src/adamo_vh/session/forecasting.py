@@ -13,6 +13,7 @@ from adamo_vh.cognition.turns import offered
 from adamo_vh.engine import World
 from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.errors import ConfigError
+from adamo_vh.files import check_place
 from adamo_vh.inference.cost.prices import cost_usd
 from adamo_vh.inference.cost.tokens import estimate_image, estimate_request, rule_for
 from adamo_vh.inference.messages import Message
@@ -139,8 +140,10 @@ def refuse_early(config: EpisodeConfig, out: Path | None, cap: Budget | None = N
     Raises:
         ConfigError: A budget of money cannot be kept.
         RecordError: The folder holds a run already.
+        FileError: It cannot be written to.
     """
     check_price(config.model, config.budget)
     check_price(config.model, cap or Budget())
     if out is not None:
         check_unused(out)
+        check_place(out)

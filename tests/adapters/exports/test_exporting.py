@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from openai.types.chat import ChatCompletionMessageParam
 from pydantic import TypeAdapter
 from tests.adapters.exports.runs import run
 from tests.run_folder import Recorder, config, played
@@ -46,6 +45,8 @@ def study(tmp_path: Path) -> Path:
 
 
 def test_sft_is_chat_that_the_openai_library_takes(lent: LentWorld, tmp_path: Path) -> None:
+    from openai.types.chat import ChatCompletionMessageParam
+
     run(tmp_path / "run", lent, "lean", "T3")
     done = export([tmp_path / "run"], "sft", tmp_path / "out")
     assert done.episodes == 1

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -90,24 +92,34 @@ def same(a: BodyFrame, b: BodyFrame) -> bool:
 
 
 FULL = replace(START, held=7)
-MOTIONS = {
-    "straight": walk(START, (3.0, 0.4)),
-    "corners": walk(START, (1.8, -0.3), (1.8, 1.5), (-0.5, 1.5)),
-    "back": walk(START, (-2.0, -0.6)),
-    "one small step": walk(START, (0.45, -0.3)),
-    "carrying": walk(FULL, (2.0, 1.0)),
-    "glance": look_motion(START, replace(START, gaze=Vec3(1.6, 0.1, 0.4))),
-    "turn": look_motion(START, START.facing(Vec3(-1.5, -1.0, 0.5))[0]),
-    "from the floor": pick(START, ahead(START, 0.45, 0.04)),
-    "from a table": pick(START, ahead(START, 0.6, 0.85)),
-    "far over a table": pick(START, ahead(START, 0.9, 0.85)),
-    "from a shelf": pick(START, ahead(START, 0.85, 1.97)),
-    "overhead": pick(START, ahead(START, 0.1, 2.0)),
-    "to the floor": drop(FULL, ahead(FULL, 0.7, 0.1)),
-    "to a table behind": drop(FULL, ahead(FULL, -0.6, 0.85)),
-    "to a shelf": drop(FULL, ahead(FULL, 0.7, 1.4)),
+MOTIONS: dict[str, Callable[[], Motion]] = {
+    "straight": lambda: walk(START, (3.0, 0.4)),
+    "corners": lambda: walk(START, (1.8, -0.3), (1.8, 1.5), (-0.5, 1.5)),
+    "back": lambda: walk(START, (-2.0, -0.6)),
+    "one small step": lambda: walk(START, (0.45, -0.3)),
+    "carrying": lambda: walk(FULL, (2.0, 1.0)),
+    "glance": lambda: look_motion(START, replace(START, gaze=Vec3(1.6, 0.1, 0.4))),
+    "turn": lambda: look_motion(START, START.facing(Vec3(-1.5, -1.0, 0.5))[0]),
+    "from the floor": lambda: pick(START, ahead(START, 0.45, 0.04)),
+    "from a table": lambda: pick(START, ahead(START, 0.6, 0.85)),
+    "far over a table": lambda: pick(START, ahead(START, 0.9, 0.85)),
+    "from a shelf": lambda: pick(START, ahead(START, 0.85, 1.97)),
+    "overhead": lambda: pick(START, ahead(START, 0.1, 2.0)),
+    "to the floor": lambda: drop(FULL, ahead(FULL, 0.7, 0.1)),
+    "to a table behind": lambda: drop(FULL, ahead(FULL, -0.6, 0.85)),
+    "to a shelf": lambda: drop(FULL, ahead(FULL, 0.7, 1.4)),
 }
-every_motion = pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+
+
+@cache
+def made(name: str) -> Motion:
+    return MOTIONS[name]()
+
+
+@pytest.fixture(params=MOTIONS)
+def motion(request: pytest.FixtureRequest) -> Motion:
+    """Every motion in turn."""
+    return made(request.param)
 
 
 # --- rotations and limbs ------------------------------------------------------------------------
@@ -210,7 +222,6 @@ def test_waiting_changes_the_posture_but_not_the_state():
 # --- every motion -------------------------------------------------------------------------------
 
 
-@every_motion
 def test_a_motion_begins_and_ends_exactly_in_its_states(motion):
     assert motion.at(0.0).body == motion.start
     last = motion.at(motion.duration_s)
@@ -219,7 +230,6 @@ def test_a_motion_begins_and_ends_exactly_in_its_states(motion):
     assert motion.body_at(motion.duration_s + 1.0) == motion.end
 
 
-@every_motion
 def test_a_motion_never_jumps_and_keeps_the_limits(motion):
     film = frames(motion)
     local = np.array([f.pose.rotations for f in film])
@@ -231,14 +241,12 @@ def test_a_motion_never_jumps_and_keeps_the_limits(motion):
     assert places[:, :, 2].min() > -0.005
 
 
-@every_motion
 def test_frames_do_not_depend_on_which_others_were_asked_for(motion):
     some = [motion.at(motion.duration_s * k / 7) for k in range(8)]
     again = [motion.at(motion.duration_s * k / 7) for k in reversed(range(8))]
     assert all(same(a, b) for a, b in zip(some, reversed(again), strict=True))
 
 
-@every_motion
 def test_a_motion_can_be_cancelled_at_any_time(motion):
     for part in (0.0, 0.3, 0.55, 0.8, 1.0):
         time_s = part * motion.duration_s
@@ -292,7 +300,7 @@ def test_a_long_walk_has_walking_speed_and_full_steps():
 
 
 def test_the_body_stays_near_the_path_and_turns_smoothly():
-    motion = MOTIONS["corners"]
+    motion = made("corners")
     film = frames(motion)
     near = min(math.hypot(f.body.position.x - 1.8, f.body.position.y + 0.3) for f in film)
     assert near < 0.07
@@ -301,7 +309,7 @@ def test_the_body_stays_near_the_path_and_turns_smoothly():
 
 
 def test_the_gaze_leads_the_body_in_a_turn():
-    motion = MOTIONS["turn"]
+    motion = made("turn")
     middle = motion.at(0.6)
     turned = wrap_angle(middle.body.heading_rad - START.heading_rad)
     yaw = math.atan2(*line_of_gaze(middle.body)[1::-1])
@@ -310,7 +318,7 @@ def test_the_gaze_leads_the_body_in_a_turn():
 
 
 def test_the_carrying_hand_stays_in_front_while_walking():
-    for frame in frames(MOTIONS["carrying"], 15):
+    for frame in frames(made("carrying"), 15):
         assert np.linalg.norm(grip(frame.pose) - CARRY) < 0.05
         assert frame.hand.distance(BodyFrame(frame.body, at_rest(frame.body)).hand) < 0.05
 
