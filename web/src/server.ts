@@ -1,0 +1,181 @@
+// Asks the server, and keeps a live room's WebSocket open.
+
+import type { Message, Offer, RoomWish, Said } from "./protocol.ts";
+import { fields, list, number, readMessage, text } from "./reading.ts";
+import { Track } from "./track/track.ts";
+
+const AGAIN_MS = [500, 1000, 2000, 4000, 8000];
+const PING_MS = 20_000;
+
+const address = (path: string): URL => new URL(`api/${path}`, document.baseURI);
+const part = encodeURIComponent;
+
+export const sceneAddress = (scene: string, variation: number): string =>
+  address(`scenes/${part(scene)}.glb?variation=${variation}`).href;
+export const figureAddress = (figure: string): string => address(`figures/${part(figure)}.glb`).href;
+
+/** A picture's address, if it is one of this server; empty otherwise. */
+export function frameAddress(frame: string): string {
+  if (!frame) return "";
+  try {
+    const url = new URL(frame, document.baseURI);
+    return url.origin === location.origin ? url.href : "";
+  } catch {
+    return "";
+  }
+}
+
+/** What is wrong, in the server's words where it gave some. */
+async function problem(answer: Response): Promise<Error> {
+  try {
+    const body = fields(await answer.json());
+    const said = text(fields(body.error).message) || text(body.detail) || text(body.message);
+    if (said) return new Error(said);
+  } catch {
+    // The status has to do.
+  }
+  return new Error(`The server answered ${answer.status}.`);
+}
+
+async function json(path: string, init?: RequestInit): Promise<unknown> {
+  const answer = await fetch(address(path), init);
+  if (!answer.ok) throw await problem(answer);
+  return answer.json();
+}
+
+export async function getOffer(): Promise<Offer> {
+  const from = fields(await json("offer"));
+  return {
+    scenes: list(from.scenes).map(fields).map((s) => ({ name: text(s.name), title: text(s.title) || text(s.name) })),
+    tasks: list(from.tasks)
+      .map(fields)
+      .map((t) => ({ id: text(t.id), instruction: text(t.instruction), scenes: list(t.scenes).map(text) })),
+    models: list(from.models)
+      .map(fields)
+      .map((m) => ({
+        name: text(m.name),
+        note: text(m.note),
+        needs_key: m.needs_key === true,
+        has_key: m.has_key === true,
+      })),
+    profiles: list(from.profiles).map(text),
+    labelings: list(from.labelings).map(text),
+    figures: list(from.figures).map(text),
+    runs: list(from.runs)
+      .map(fields)
+      .map((r) => ({
+        name: text(r.name),
+        instruction: text(r.instruction),
+        model: text(r.model),
+        completion: typeof r.completion === "number" ? r.completion : null,
+        when: text(r.when),
+      })),
+  };
+}
+
+export async function openRoom(wish: RoomWish): Promise<string> {
+  const answer = await json("rooms", {
+    method: "POST",
+    headers: { "content-type": "application/json" },
+    body: JSON.stringify(wish),
+  });
+  return text(fields(answer).room);
+}
+
+/** A run as a track. The server makes it on the first request, which takes a while. */
+export async function getTrack(run: string, waiting: () => void): Promise<Track> {
+  for (;;) {
+    const answer = await fetch(address(`runs/${run.split("/").map(part).join("/")}/track`));
+    if (answer.status === 202) {
+      waiting();
+      const wait = number(Number(answer.headers.get("retry-after")), 1) || 1;
+      await new Promise((done) => setTimeout(done, wait * 1000));
+      continue;
+    }
+    if (!answer.ok) throw await problem(answer);
+    return trackOf(await answer.json());
+  }
+}
+
+/** A track that is told as a whole. */
+export function trackOf(told: unknown): Track {
+  const from = fields(told);
+  const hello = readMessage({ ...fields(from.hello), type: "hello" });
+  if (hello?.type !== "hello") throw new Error("This is no track.");
+  const track = new Track(hello);
+  for (const item of list(from.messages)) {
+    const message = readMessage(item);
+    if (message) track.add(message);
+  }
+  return track;
+}
+
+export interface LiveListener {
+  message: (message: Message) => void;
+  connected: (on: boolean) => void;
+}
+
+/** The connection to a live room. It comes back by itself, and goes on where it was. */
+export class Live {
+  private socket: WebSocket | null = null;
+  private tries = 0;
+  private isClosed = false;
+  private next = 0;
+  private ping = 0;
+
+  constructor(
+    private readonly room: string,
+    private readonly listener: LiveListener,
+  ) {
+    this.open();
+  }
+
+  private open(): void {
+    const url = address(`rooms/${part(this.room)}/live?from=${this.next}`);
+    url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+    const socket = new WebSocket(url);
+    this.socket = socket;
+    socket.onopen = () => {
+      this.tries = 0;
+      this.listener.connected(true);
+    };
+    socket.onmessage = ({ data }) => this.take(data);
+    socket.onclose = ({ code }) => {
+      this.listener.connected(false);
+      const isOver = code === 1000 || code === 1008;
+      if (this.isClosed || isOver) return;
+      const wait = AGAIN_MS[Math.min(this.tries++, AGAIN_MS.length - 1)];
+      setTimeout(() => this.open(), wait);
+    };
+    clearInterval(this.ping);
+    this.ping = window.setInterval(() => this.say({ type: "ping" }), PING_MS);
+  }
+
+  private take(data: unknown): void {
+    let told: unknown;
+    try {
+      told = JSON.parse(String(data));
+    } catch {
+      return;
+    }
+    for (const item of Array.isArray(told) ? told : [told]) {
+      const message = readMessage(item);
+      if (!message) continue;
+      this.next = Math.max(this.next, message.n + 1);
+      this.listener.message(message);
+    }
+  }
+
+  /** Returns whether it was sent. */
+  say(said: Said): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(said));
+    return true;
+  }
+
+  close(): void {
+    this.isClosed = true;
+    clearInterval(this.ping);
+    this.socket?.close(1000);
+  }
+}

@@ -1,0 +1,83 @@
+// From the address to what is shown.
+
+import { el } from "../dom.ts";
+import type { Hello } from "../protocol.ts";
+import { getTrack, Live } from "../server.ts";
+import { Show } from "../show.ts";
+import { watch, type Watching } from "../view/watching.ts";
+import type { Shell } from "./shell.ts";
+import { openRuns } from "./runs.ts";
+import { openStart } from "./start.ts";
+
+export class Router {
+  private open: Watching[] = [];
+  private turn = 0;
+
+  constructor(private readonly shell: Shell) {
+    shell.newButton.addEventListener("click", () => void openStart());
+    shell.runsButton.addEventListener("click", () => void openRuns());
+  }
+
+  start(): void {
+    addEventListener("hashchange", () => void this.go());
+    void this.go();
+  }
+
+  private async go(): Promise<void> {
+    const asked = new URLSearchParams(location.hash.slice(1));
+    const turn = ++this.turn;
+    for (const watching of this.open) watching.close();
+    this.open = [];
+    document.querySelectorAll("dialog[open]").forEach((dialog) => (dialog as HTMLDialogElement).close());
+    const room = asked.get("room");
+    const run = asked.get("run");
+    try {
+      if (room) this.goLive(room, turn);
+      else if (run) await this.goReplay(run, turn);
+      else {
+        this.wait("");
+        await openStart();
+      }
+    } catch (error) {
+      if (turn === this.turn) this.wait(error instanceof Error ? error.message : String(error));
+    }
+  }
+
+  /** Words in place of a room. */
+  private wait(words: string): void {
+    this.shell.work.className = "work waiting";
+    this.shell.work.replaceChildren(el("p", { role: "status" }, words));
+    this.shell.badge.hidden = true;
+    this.shell.where.textContent = "";
+  }
+
+  private goLive(room: string, turn: number): void {
+    this.wait("Connecting to the room");
+    let show: Show | null = null;
+    const begin = (hello: Hello): void => {
+      if (show || turn !== this.turn) return;
+      show = new Show(hello);
+      show.live = live;
+      show.connect(true);
+      this.open.push(watch(this.shell, show));
+    };
+    const live = new Live(room, {
+      message: (message) => {
+        if (turn !== this.turn) live.close();
+        else if (message.type === "hello") begin({ ...message, live: true });
+        else show?.take(message);
+      },
+      connected: (on) => {
+        if (show) show.connect(on);
+        else if (!on && turn === this.turn) this.wait("This room cannot be reached. It may have been closed.");
+      },
+    });
+  }
+
+  private async goReplay(run: string, turn: number): Promise<void> {
+    this.wait("Preparing the replay");
+    const track = await getTrack(run, () => this.wait("The run is executed again for its replay"));
+    if (turn !== this.turn) return;
+    this.open.push(watch(this.shell, new Show(track)));
+  }
+}

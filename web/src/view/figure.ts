@@ -1,0 +1,98 @@
+// The person: a skinned figure whose joints are set from the poses of the track.
+
+import { type Bone, Group, type Material, Matrix4, type Object3D, type SkinnedMesh, Vector3 } from "three";
+import { type Ambience, dimBy } from "./ambience.ts";
+import { bonesByName, isStandard, loadGltf, nodesByName, skinnedIn } from "./loading.ts";
+import type { Moment } from "../track/track.ts";
+
+/** Parts of the head, which her own eyes do not see. */
+const HEAD = ["head", "eyes", "lids", "brows", "lashes", "hair", "teeth", "tongue", "mouth"];
+/** From the head's joint to between the eyes, where the file does not say it. */
+const EYES = new Vector3(0.09, 0, 0.085);
+
+export class Figure {
+  readonly group = new Group();
+  readonly meshes: SkinnedMesh[];
+  private readonly head: Bone | undefined;
+  private readonly headMeshes: Object3D[];
+  private readonly feet: Bone[];
+  private readonly hand: Bone | undefined;
+
+  private constructor(
+    private readonly root: Object3D,
+    scene: Object3D,
+    private readonly bones: (Bone | undefined)[],
+    byName: Map<string, Bone>,
+    ambience: Ambience,
+  ) {
+    this.meshes = skinnedIn(scene);
+    this.headMeshes = this.meshes.filter((mesh) => HEAD.includes((mesh.material as Material).name));
+    this.head = byName.get("head");
+    this.hand = byName.get("hand_r");
+    this.feet = ["foot_l", "foot_r"].map((name) => byName.get(name)).filter((bone) => bone !== undefined);
+    for (const mesh of this.meshes) {
+      mesh.frustumCulled = false;
+      mesh.castShadow = mesh.receiveShadow = true;
+      const { name } = mesh.material as Material;
+      if (["lids", "brows", "lashes", "eyes"].includes(name)) mesh.castShadow = false;
+      const material = mesh.material as Material;
+      if (isStandard(material)) {
+        if (name === "head" || name === "hands") material.roughness = 0.62;
+        if (name === "eyes") material.roughness = 0.15;
+        if (name === "hair") material.roughness = 0.6;
+        dimBy(material, ambience);
+      }
+    }
+    this.group.add(root, ...this.meshes);
+  }
+
+  static async load(url: string, joints: readonly string[], ambience: Ambience): Promise<Figure> {
+    const gltf = await loadGltf(url);
+    const root = nodesByName(gltf).get("human") ?? gltf.scene;
+    const byName = bonesByName(gltf);
+    return new Figure(root, gltf.scene, joints.map((joint) => byName.get(joint)), byName, ambience);
+  }
+
+  pose(moment: Moment): void {
+    const [x, y, heading] = moment.body;
+    this.root.position.set(x, y, 0);
+    this.root.quaternion.set(0, 0, Math.sin(heading / 2), Math.cos(heading / 2));
+    this.bones.forEach((bone, i) => {
+      const q = moment.joints;
+      if (bone && q.length >= i * 4 + 4) {
+        bone.quaternion.set(q[i * 4] ?? 0, q[i * 4 + 1] ?? 0, q[i * 4 + 2] ?? 0, q[i * 4 + 3] ?? 1);
+      }
+    });
+    this.bones[0]?.position.set(...moment.pelvis);
+    this.group.updateMatrixWorld(true);
+  }
+
+  /** Show or leave out the head: whoever looks out of it does not see it. */
+  showHead(on: boolean): void {
+    for (const mesh of this.headMeshes) mesh.visible = on;
+  }
+
+  /** Where her eyes are and which way they look, in the room. */
+  eyes(): { place: Vector3; forward: Vector3; up: Vector3 } {
+    const matrix = this.head?.matrixWorld ?? new Matrix4();
+    return {
+      place: EYES.clone().applyMatrix4(matrix),
+      forward: new Vector3(1, 0, 0).transformDirection(matrix),
+      up: new Vector3(0, 0, 1).transformDirection(matrix),
+    };
+  }
+
+  /** Top of the head. */
+  crown(): Vector3 {
+    return new Vector3(0, 0, 0.24).applyMatrix4(this.head?.matrixWorld ?? this.root.matrixWorld);
+  }
+
+  handPlace(): Vector3 {
+    return new Vector3().setFromMatrixPosition((this.hand ?? this.root).matrixWorld);
+  }
+
+  /** Where the feet stand. */
+  footPlaces(): Vector3[] {
+    return this.feet.map((bone) => new Vector3(0.06, 0, 0).applyMatrix4(bone.matrixWorld));
+  }
+}

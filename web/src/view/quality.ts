@@ -1,0 +1,51 @@
+// Fits the quality to the machine: sharper pictures and shadows where frames come fast, plainer ones where not.
+
+export interface Level {
+  /** Share of the screen's own pixels. */
+  pixels: number;
+  shadow: number;
+}
+
+export const LEVELS: readonly Level[] = [
+  { pixels: 0.5, shadow: 1024 },
+  { pixels: 0.62, shadow: 1024 },
+  { pixels: 0.75, shadow: 1024 },
+  { pixels: 0.87, shadow: 1536 },
+  { pixels: 1, shadow: 2048 },
+];
+
+const SLOW_MS = 80;
+const FAST_MS = 24;
+const CALM = 8;
+/** So many frames are looked at before the level changes again. */
+
+export class Quality {
+  level = LEVELS.length - 1;
+  /** Mean time between two pictures of a movement, milliseconds. */
+  frameMs = 0;
+  private count = 0;
+  private ceiling = LEVELS.length - 1;
+
+  /** Take note of the time since the last picture. Returns whether the level changed. */
+  note(ms: number): boolean {
+    if (ms > 1000) return false;
+    this.frameMs = this.frameMs === 0 ? ms : this.frameMs * 0.8 + ms * 0.2;
+    if (++this.count < CALM) return false;
+    if (this.frameMs > SLOW_MS && this.level > 0) return this.go(this.level - 1, true);
+    if (this.frameMs < FAST_MS && this.level < this.ceiling) return this.go(this.level + 1, false);
+    return false;
+  }
+
+  private go(level: number, isWorse: boolean): boolean {
+    // What proved too slow is not tried again, or it would swing to and fro.
+    if (isWorse) this.ceiling = level;
+    this.level = level;
+    this.count = 0;
+    this.frameMs = 0;
+    return true;
+  }
+
+  get current(): Level {
+    return LEVELS[this.level] as Level;
+  }
+}

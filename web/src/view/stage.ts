@@ -1,0 +1,170 @@
+// Draws the room: one renderer, one loop, a picture only when something changed.
+
+import { ACESFilmicToneMapping, Color, PCFShadowMap, Scene, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
+import type { Hello } from "../protocol.ts";
+import type { Moment } from "../track/track.ts";
+import { Cameras } from "./cameras.ts";
+import { ContactShadows } from "./contact.ts";
+import { Figure } from "./figure.ts";
+import { isSoftware, type Lights, lightRoom, surroundings } from "./lights.ts";
+import type { Progress } from "./loading.ts";
+import { Quality } from "./quality.ts";
+import { Room } from "./room.ts";
+
+export interface Stats {
+  frames: number;
+  frameMs: number;
+  scriptMs: number;
+  calls: number;
+  triangles: number;
+  pixels: string;
+}
+
+const REFLECTED = 0.8;
+
+/** Is called before each picture; returns whether something changed that the picture shows. */
+export type Tick = (seconds: number) => boolean;
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly quality = new Quality();
+  readonly stats: Stats = { frames: 0, frameMs: 0, scriptMs: 0, calls: 0, triangles: 0, pixels: "" };
+  private readonly lights: Lights;
+  private readonly contact: ContactShadows;
+  private readonly afterwards: (() => void)[] = [];
+  private brightness = 1;
+  private dirty = true;
+  private last = 0;
+  private drewLast = false;
+  private running = 0;
+  moment: Moment | null = null;
+
+  private constructor(
+    readonly renderer: WebGLRenderer,
+    readonly hello: Hello,
+    readonly room: Room,
+    readonly figure: Figure,
+    readonly cameras: Cameras,
+    private readonly tick: Tick,
+  ) {
+    const asked = new URLSearchParams(location.search).get("quality");
+    const isPlain = asked ? asked === "plain" : isSoftware(renderer);
+    this.lights = lightRoom(hello.scene, room.window, isPlain);
+    this.contact = new ContactShadows(hello.scene.objects);
+    this.scene.background = new Color(0x1a1714);
+    if (!isPlain) {
+      this.scene.environment = surroundings(renderer, room.window ?? new Vector3(1, 0, 0));
+      this.scene.environmentIntensity = REFLECTED;
+    }
+    this.scene.add(room.group, figure.group, this.lights.group, this.contact.mesh);
+  }
+
+  static async open(
+    canvas: HTMLCanvasElement,
+    hello: Hello,
+    urls: { scene: string; figure: string },
+    tick: Tick,
+    progress?: Progress,
+  ): Promise<Stage> {
+    const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    renderer.outputColorSpace = SRGBColorSpace;
+    renderer.toneMapping = ACESFilmicToneMapping;
+    renderer.toneMappingExposure = 1.05;
+    renderer.shadowMap.enabled = true;
+    renderer.shadowMap.type = PCFShadowMap;
+    renderer.info.autoReset = false;
+    const room = await Room.load(urls.scene, hello.scene, progress);
+    const figure = await Figure.load(urls.figure, hello.joints, room.ambience);
+    const cameras = new Cameras(hello.scene, hello.body, room.voxels);
+    const stage = new Stage(renderer, hello, room, figure, cameras, tick);
+    await renderer.compileAsync(stage.scene, cameras.camera);
+    return stage;
+  }
+
+  /** Called after each picture: for what lies over it, e.g. labels. */
+  onDrawn(listener: () => void): void {
+    this.afterwards.push(listener);
+  }
+
+  /** Draw again soon. */
+  touch(): void {
+    this.dirty = true;
+  }
+
+  show(moment: Moment): void {
+    const first = this.moment === null;
+    this.moment = moment;
+    for (const [id, placed] of moment.things) this.room.place(id, placed);
+    for (const [id, thing] of this.room.things) thing.visible = !moment.gone.has(id);
+    if (moment.lights !== this.brightness) {
+      this.brightness = moment.lights;
+      this.lights.dim(moment.lights);
+      this.scene.environmentIntensity = REFLECTED * (0.2 + 0.8 * moment.lights);
+    }
+    this.figure.pose(moment);
+    this.contact.update(moment, this.figure);
+    if (first) this.cameras.begin(moment);
+    this.lights.refresh();
+    this.dirty = true;
+  }
+
+  resize(): void {
+    const canvas = this.renderer.domElement;
+    const { clientWidth: width, clientHeight: height } = canvas;
+    if (!width || !height) return;
+    const ratio = Math.min(devicePixelRatio, 2) * this.quality.current.pixels;
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.cameras.resize(width, height);
+    this.lights.shadowSize(this.quality.current.shadow);
+    this.stats.pixels = `${canvas.width}x${canvas.height}`;
+    this.dirty = true;
+  }
+
+  start(): void {
+    const loop = (now: number): void => {
+      this.running = requestAnimationFrame(loop);
+      this.frame(now);
+    };
+    this.running = requestAnimationFrame(loop);
+  }
+
+  private frame(now: number): void {
+    const since = this.last ? now - this.last : 16;
+    this.last = now;
+    const begin = performance.now();
+    const seconds = Math.min(since / 1000, 0.25);
+    if (this.tick(seconds)) this.dirty = true;
+    if (this.moment && this.cameras.update(this.moment, this.figure, seconds)) this.dirty = true;
+    if (!this.dirty || !this.moment) {
+      this.drewLast = false;
+      return;
+    }
+    this.dirty = false;
+    this.draw();
+    const spent = performance.now() - begin;
+    const { stats } = this;
+    stats.frames++;
+    stats.scriptMs = stats.scriptMs ? stats.scriptMs * 0.9 + spent * 0.1 : spent;
+    if (this.drewLast) {
+      stats.frameMs = stats.frameMs ? stats.frameMs * 0.85 + since * 0.15 : since;
+      if (stats.frames > 4 && this.quality.note(since)) this.resize();
+    }
+    this.drewLast = true;
+  }
+
+  private draw(): void {
+    const { renderer, cameras, stats } = this;
+    this.figure.showHead(cameras.kind !== "eyes");
+    renderer.info.reset();
+    renderer.render(this.scene, cameras.camera);
+    stats.calls = renderer.info.render.calls;
+    stats.triangles = renderer.info.render.triangles;
+    for (const listener of this.afterwards) listener();
+  }
+
+  close(): void {
+    cancelAnimationFrame(this.running);
+    this.renderer.dispose();
+  }
+}

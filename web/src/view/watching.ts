@@ -1,0 +1,67 @@
+// Puts room, desk and mind of one track on the page.
+
+import { buildMind } from "../mind/panel.ts";
+import { type Shell, setBadge, tabs } from "../shell/shell.ts";
+import { buildTimeline } from "../shell/timeline.ts";
+import type { Show } from "../show.ts";
+import { buildDesk } from "../talk/desk.ts";
+import { text } from "../reading.ts";
+import { el, write } from "../dom.ts";
+import { Seeing } from "./seeing.ts";
+import { listenToKeys } from "../shell/keys.ts";
+
+export interface Watching {
+  show: Show;
+  seeing: Seeing;
+  close: () => void;
+}
+
+export function watch(shell: Shell, show: Show): Watching {
+  const timeline = buildTimeline(show);
+  const mind = buildMind(show);
+  const desk = buildDesk(show, timeline.root);
+  const seeing = new Seeing(show, () => {
+    timeline.update();
+    mind.update();
+    if (!show.player.following) desk.update();
+  });
+  const left = el("div", { class: "left" }, seeing.root, desk.root);
+  shell.work.className = "work";
+  shell.work.replaceChildren(left, tabs(shell.work), mind.root);
+  write(shell.where, whereWords(show));
+  const badge = (): void => {
+    const isLive = show.hello.live;
+    setBadge(shell.badge, isLive ? (show.connected ? "Live" : "Connecting") : "Replay", isLive ? "live" : "");
+    const { notice } = show;
+    seeing.tell(notice?.text ?? "", notice?.level === "error");
+    if (!notice) return;
+    setTimeout(() => {
+      if (show.notice !== notice) return;
+      show.notice = null;
+      seeing.tell("");
+    }, 6000);
+  };
+  show.changes.listen(badge);
+  badge();
+  seeing.open().catch((error: unknown) => {
+    seeing.failed(`The room cannot be shown: ${error instanceof Error ? error.message : String(error)}`);
+  });
+  // For measuring and for tests: ?debug lets the console reach what is shown.
+  if (new URLSearchParams(location.search).has("debug")) Object.assign(globalThis, { studio: { show, seeing } });
+  const deaf = listenToKeys(show, seeing, desk.talkBox);
+  return {
+    show,
+    seeing,
+    close: () => {
+      deaf();
+      show.live?.close();
+      seeing.stage?.close();
+    },
+  };
+}
+
+function whereWords({ hello }: Show): string {
+  const { settings, scene } = hello;
+  const model = text(settings.model);
+  return [scene.title || scene.name, model, text(settings.profile)].filter(Boolean).join(" · ");
+}
