@@ -1,7 +1,7 @@
 // Ambient light is dimmer in corners, under tables and behind sofas. How dim is worked out once for a
 // grid of points, from the cubes of the room, and every surface looks it up.
 
-import { Data3DTexture, LinearFilter, type MeshStandardMaterial, RedFormat, Vector3 } from "three";
+import { Data3DTexture, LinearFilter, type Material, RedFormat, Vector3 } from "three";
 import { CELL_M, type Voxels } from "./voxels.ts";
 
 const FAR_M = 0.9;
@@ -88,7 +88,7 @@ const FRAGMENT = `#include <aomap_fragment>
 }`;
 
 /** Let a material look up how open its place is. */
-export function dimBy(material: MeshStandardMaterial, ambience: Ambience): void {
+export function dimBy(material: Material, ambience: Ambience): void {
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, ambience);
     shader.vertexShader = `varying vec3 vRoomPlace;\n${shader.vertexShader.replace("#include <project_vertex>", VERTEX)}`;

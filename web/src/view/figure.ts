@@ -1,8 +1,9 @@
 // The person: a skinned figure whose joints are set from the poses of the track.
 
 import { type Bone, Group, type Material, Matrix4, type Object3D, type SkinnedMesh, Vector3 } from "three";
-import { type Ambience, dimBy } from "./ambience.ts";
-import { bonesByName, isStandard, loadGltf, nodesByName, skinnedIn } from "./loading.ts";
+import type { Ambience } from "./ambience.ts";
+import { bonesByName, loadGltf, nodesByName, skinnedIn } from "./loading.ts";
+import { looks } from "./room.ts";
 import type { Moment } from "../track/track.ts";
 
 /** Parts of the head, which her own eyes do not see. */
@@ -24,6 +25,7 @@ export class Figure {
     private readonly bones: (Bone | undefined)[],
     byName: Map<string, Bone>,
     ambience: Ambience,
+    isPlain: boolean,
   ) {
     this.meshes = skinnedIn(scene);
     this.headMeshes = this.meshes.filter((mesh) => HEAD.includes((mesh.material as Material).name));
@@ -35,22 +37,16 @@ export class Figure {
       mesh.castShadow = mesh.receiveShadow = true;
       const { name } = mesh.material as Material;
       if (["lids", "brows", "lashes", "eyes"].includes(name)) mesh.castShadow = false;
-      const material = mesh.material as Material;
-      if (isStandard(material)) {
-        if (name === "head" || name === "hands") material.roughness = 0.62;
-        if (name === "eyes") material.roughness = 0.15;
-        if (name === "hair") material.roughness = 0.6;
-        dimBy(material, ambience);
-      }
+      mesh.material = looks(mesh.material as Material, ambience, isPlain);
     }
     this.group.add(root, ...this.meshes);
   }
 
-  static async load(url: string, joints: readonly string[], ambience: Ambience): Promise<Figure> {
+  static async load(url: string, joints: readonly string[], ambience: Ambience, isPlain: boolean): Promise<Figure> {
     const gltf = await loadGltf(url);
     const root = nodesByName(gltf).get("human") ?? gltf.scene;
     const byName = bonesByName(gltf);
-    return new Figure(root, gltf.scene, joints.map((joint) => byName.get(joint)), byName, ambience);
+    return new Figure(root, gltf.scene, joints.map((joint) => byName.get(joint)), byName, ambience, isPlain);
   }
 
   pose(moment: Moment): void {

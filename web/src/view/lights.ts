@@ -74,10 +74,11 @@ function probe(window: Vector3): LightProbe {
 }
 
 /** Whether a processor draws in place of a graphics card. */
-export function isSoftware(renderer: WebGLRenderer): boolean {
-  const gl = renderer.getContext();
-  const about = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
+export function isSoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const about = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl && about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 

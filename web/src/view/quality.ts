@@ -7,6 +7,7 @@ export interface Level {
 }
 
 export const LEVELS: readonly Level[] = [
+  { pixels: 0.4, shadow: 1024 },
   { pixels: 0.5, shadow: 1024 },
   { pixels: 0.62, shadow: 1024 },
   { pixels: 0.75, shadow: 1024 },

@@ -7,7 +7,8 @@ import {
   type Material,
   type Mesh,
   MeshBasicMaterial,
-  MeshStandardMaterial,
+  MeshLambertMaterial,
+  type MeshStandardMaterial,
   type Object3D,
   Vector3,
 } from "three";
@@ -33,6 +34,7 @@ export class Room {
   private constructor(
     readonly scene: SceneShape,
     nodes: Map<string, Object3D>,
+    isPlain: boolean,
   ) {
     const shell = nodes.get("room");
     const pieces = scene.furniture.map((piece) => nodes.get(piece.node)).filter((node) => node !== undefined);
@@ -64,15 +66,15 @@ export class Room {
       this.things.set(object.id, node);
       this.group.add(node);
     }
-    for (const mesh of meshesIn(this.group)) mesh.material = looks(mesh.material as Material, this.ambience);
+    for (const mesh of meshesIn(this.group)) mesh.material = looks(mesh.material as Material, this.ambience, isPlain);
   }
 
-  static async load(url: string, scene: SceneShape, progress?: Progress): Promise<Room> {
+  static async load(url: string, scene: SceneShape, isPlain: boolean, progress?: Progress): Promise<Room> {
     const gltf = await loadGltf(url, progress);
     const nodes = nodesByName(gltf);
     nodes.get("world")?.quaternion.identity();
     gltf.scene.updateMatrixWorld(true);
-    return new Room(scene, nodes);
+    return new Room(scene, nodes, isPlain);
   }
 
   place(id: number, at: Placed): void {
@@ -97,46 +99,42 @@ function windowOf(meshes: readonly Mesh[]): Vector3 | null {
 
 const made = new WeakMap<Material, Material>();
 
-/** The look of a material of the file under this light. */
-function looks(material: Material, ambience: Ambience): Material {
+/** The look of a material of the file under this light; plain where a processor draws. */
+export function looks(material: Material, ambience: Ambience, isPlain: boolean): Material {
   const known = made.get(material);
   if (known) return known;
-  const look = material.name === "outside" ? outside(material) : surface(material, ambience);
+  const look = material.name === "outside" ? outside(material) : surface(material, ambience, isPlain);
+  look.name = material.name;
   made.set(material, look);
   return look;
 }
 
 function outside(material: Material): Material {
   const map = "map" in material ? (material as MeshStandardMaterial).map : null;
-  const look = new MeshBasicMaterial({ map, toneMapped: false });
-  look.name = "outside";
+  return new MeshBasicMaterial({ map, toneMapped: false });
+}
+
+const ROUGHNESS: Record<string, number> = { parquet: 0.52, walls: 0.95, glass: 0.12, head: 0.62, hands: 0.62, eyes: 0.15, hair: 0.6 };
+
+function surface(material: Material, ambience: Ambience, isPlain: boolean): Material {
+  if (!isStandard(material)) return material;
+  const { name } = material;
+  material.roughness = ROUGHNESS[name] ?? material.roughness;
+  if (name === "parquet") material.color.setScalar(0.8);
+  if (name === "glass") material.transparent = true;
+  if (SHADES.includes(name)) {
+    material.emissive.copy(material.color).multiplyScalar(0.55);
+    material.map = WHITE; // One program less to compile.
+  }
+  if (material.map) material.map.anisotropy = isPlain ? 1 : 4;
+  if (name === "glass") material.depthWrite = false;
+  const look = isPlain ? plain(material) : material;
+  dimBy(look, ambience);
   return look;
 }
 
-function surface(material: Material, ambience: Ambience): Material {
-  if (!isStandard(material)) return material;
-  if (SHADES.includes(material.name)) {
-    material.emissive.copy(material.color).multiplyScalar(0.55);
-    material.map = WHITE; // One program less to compile.
-    dimBy(material, ambience);
-    return material;
-  }
-  if (material.name === "glass") return glass(material);
-  if (material.name === "parquet") {
-    material.roughness = 0.52;
-    material.color.setScalar(0.8);
-  }
-  if (material.name === "walls") material.roughness = 0.95;
-  if (material.map) material.map.anisotropy = 4;
-  dimBy(material, ambience);
-  return material;
+/** Without reflections: a fraction of the work a pixel. */
+function plain(material: MeshStandardMaterial): MeshLambertMaterial {
+  const { map, color, emissive, transparent, depthWrite, vertexColors, side } = material;
+  return new MeshLambertMaterial({ map, color, emissive, transparent, depthWrite, vertexColors, side });
 }
-
-function glass(material: MeshStandardMaterial): Material {
-  material.transparent = true;
-  material.depthWrite = false;
-  material.roughness = Math.min(material.roughness, 0.12);
-  material.envMapIntensity = 1.6;
-  return material;
-}
-

@@ -21,6 +21,10 @@ export interface Stats {
 }
 
 const REFLECTED = 0.8;
+/** After so long without a change the picture is drawn sharp. */
+const STILL_MS = 350;
+/** Where a processor draws, shadows follow this often. */
+const SHADOWS_MS = 220;
 
 /** Is called before each picture; returns whether something changed that the picture shows. */
 export type Tick = (seconds: number) => boolean;
@@ -33,6 +37,10 @@ export class Stage {
   private readonly contact: ContactShadows;
   private readonly afterwards: (() => void)[] = [];
   private brightness = 1;
+  private isSharp = true;
+  private drawnAt = 0;
+  private shadowsLate = true;
+  private shadowsAt = 0;
   private dirty = true;
   private last = 0;
   private drewLast = false;
@@ -46,9 +54,8 @@ export class Stage {
     readonly figure: Figure,
     readonly cameras: Cameras,
     private readonly tick: Tick,
+    private readonly isPlain: boolean,
   ) {
-    const asked = new URLSearchParams(location.search).get("quality");
-    const isPlain = asked ? asked === "plain" : isSoftware(renderer);
     this.lights = lightRoom(hello.scene, room.window, isPlain);
     this.contact = new ContactShadows(hello.scene.objects);
     this.scene.background = new Color(0x1a1714);
@@ -66,17 +73,19 @@ export class Stage {
     tick: Tick,
     progress?: Progress,
   ): Promise<Stage> {
-    const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    const asked = new URLSearchParams(location.search).get("quality");
+    const isPlain = asked ? asked === "plain" : isSoftware();
+    const renderer = new WebGLRenderer({ canvas, antialias: !isPlain, powerPreference: "high-performance" });
     renderer.outputColorSpace = SRGBColorSpace;
     renderer.toneMapping = ACESFilmicToneMapping;
     renderer.toneMappingExposure = 1.05;
     renderer.shadowMap.enabled = true;
     renderer.shadowMap.type = PCFShadowMap;
     renderer.info.autoReset = false;
-    const room = await Room.load(urls.scene, hello.scene, progress);
-    const figure = await Figure.load(urls.figure, hello.joints, room.ambience);
+    const room = await Room.load(urls.scene, hello.scene, isPlain, progress);
+    const figure = await Figure.load(urls.figure, hello.joints, room.ambience, isPlain);
     const cameras = new Cameras(hello.scene, hello.body, room.voxels);
-    const stage = new Stage(renderer, hello, room, figure, cameras, tick);
+    const stage = new Stage(renderer, hello, room, figure, cameras, tick, isPlain);
     await renderer.compileAsync(stage.scene, cameras.camera);
     return stage;
   }
@@ -104,7 +113,7 @@ export class Stage {
     this.figure.pose(moment);
     this.contact.update(moment, this.figure);
     if (first) this.cameras.begin(moment);
-    this.lights.refresh();
+    this.shadowsLate = true;
     this.dirty = true;
   }
 
@@ -112,13 +121,26 @@ export class Stage {
     const canvas = this.renderer.domElement;
     const { clientWidth: width, clientHeight: height } = canvas;
     if (!width || !height) return;
-    const ratio = Math.min(devicePixelRatio, 2) * this.quality.current.pixels;
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(width, height, false);
+    this.setPixels(this.quality.current.pixels);
     this.cameras.resize(width, height);
     this.lights.shadowSize(this.quality.current.shadow);
-    this.stats.pixels = `${canvas.width}x${canvas.height}`;
     this.dirty = true;
+  }
+
+  /** Draw with a share of the screen's own pixels. */
+  private setPixels(share: number): void {
+    const canvas = this.renderer.domElement;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * share);
+    this.renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
+    this.stats.pixels = `${canvas.width}x${canvas.height}`;
+    this.isSharp = share >= 1;
+  }
+
+  /** Where pictures of a movement are coarse, what stands still is drawn once more with all pixels. */
+  private sharpen(now: number): void {
+    if (this.isSharp || !this.moment || now - this.drawnAt < STILL_MS) return;
+    this.setPixels(1);
+    this.draw();
   }
 
   start(): void {
@@ -138,10 +160,13 @@ export class Stage {
     if (this.moment && this.cameras.update(this.moment, this.figure, seconds)) this.dirty = true;
     if (!this.dirty || !this.moment) {
       this.drewLast = false;
+      this.sharpen(now);
       return;
     }
     this.dirty = false;
+    if (this.isSharp && this.quality.current.pixels < 1) this.setPixels(this.quality.current.pixels);
     this.draw();
+    this.drawnAt = now;
     const spent = performance.now() - begin;
     const { stats } = this;
     stats.frames++;
@@ -155,6 +180,12 @@ export class Stage {
 
   private draw(): void {
     const { renderer, cameras, stats } = this;
+    const now = performance.now();
+    if (this.shadowsLate && (!this.isPlain || now - this.shadowsAt > SHADOWS_MS)) {
+      this.lights.refresh();
+      this.shadowsLate = false;
+      this.shadowsAt = now;
+    }
     this.figure.showHead(cameras.kind !== "eyes");
     renderer.info.reset();
     renderer.render(this.scene, cameras.camera);
