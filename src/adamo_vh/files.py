@@ -22,6 +22,7 @@ from adamo_vh.errors import FileError
 from adamo_vh.readable import encodable, readable
 
 CACHE_DIR = "ADAMO_VH_CACHE_DIR"
+DATA_DIR = "ADAMO_VH_DATA_DIR"
 """Environment variable: the folder of everything that can be made again."""
 
 _MAX_BYTES = 1_000_000
@@ -339,3 +340,13 @@ def cache_folder() -> Path:
     import platformdirs
 
     return Path(platformdirs.user_cache_dir("adamo-vh"))
+
+
+def data_folder() -> Path:
+    """The folder of what was fetched once, for this user on this machine."""
+    given = os.environ.get(DATA_DIR, "").strip()
+    if given:
+        return Path(given).expanduser()
+    import platformdirs
+
+    return Path(platformdirs.user_data_dir("adamo-vh"))
