@@ -1,7 +1,8 @@
 """Generated instructions, possible and impossible ones, and what is claimed of them.
 
     python -m benchmarks.claims [--count 2000] [--draw 0] [--model baseline] [--scene s1]
-        [--labeling sem] [--profile paper] [--resolution 640x360] [--json]
+        [--labeling sem] [--profile paper] [--resolution 640x360] [--shard 1/2]
+        [--json]
 
 Each instruction is made of a thing, what is said of it (true or false), a place (known or unknown
 furniture, another thing, the floor) and a count. An answer is judged by its text alone against the
@@ -21,6 +22,7 @@ from typing import Any
 from benchmarks.judging import COLOURS, Outcome, false_claims, holds
 
 import adamo_vh
+from adamo_vh.cli.settings import read_shard
 from adamo_vh.engine import World
 from adamo_vh.episode.config import read_resolution
 from adamo_vh.inference.model import Model
@@ -197,8 +199,14 @@ def _place(draw: random.Random, scene: str, ids: str) -> tuple[str, str]:
     return f"{words} the {noun}", " | ".join(f"{_SIDES[words]} {i} {anchor}" for i in each)
 
 
-def played(case: Case, engine: World, model: str | Model, resolution: tuple[int, int]) -> Outcome:
-    """Have an instruction carried out from the start of its scene."""
+def played(
+    case: Case,
+    engine: World,
+    model: str | Model,
+    resolution: tuple[int, int],
+    frames: adamo_vh.FrameCache | None = None,
+) -> Outcome:
+    """Have an instruction carried out from the start of its scene; views of it are drawn once."""
     engine.reset(0)
     before = engine.state()
     result = adamo_vh.run_episode(
@@ -209,6 +217,7 @@ def played(case: Case, engine: World, model: str | Model, resolution: tuple[int,
         model=model,
         resolution=resolution,
         engine=engine,
+        frame_cache=frames,
     )
     return Outcome(before, engine.state(), result.answer)
 
@@ -233,20 +242,26 @@ def main() -> None:
     parser.add_argument("--labeling", action="append")
     parser.add_argument("--profile", action="append")
     parser.add_argument("--resolution", type=read_resolution, default=(640, 360))
+    parser.add_argument(
+        "--shard", type=read_shard, default=(1, 1), help="part I of N of the same instructions"
+    )
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
-    made = cases(
+    drawn = cases(
         random.Random(arguments.draw),
         arguments.count,
         arguments.scene or ["s1", "s2"],
         arguments.labeling or ["sem", "opaq"],
         arguments.profile or ["paper", "lean"],
     )
+    # The world and the baseline are deterministic: what was drawn twice is played once.
+    part, parts = arguments.shard
+    made = list(dict.fromkeys(drawn))[part - 1 :: parts]
     rows: list[dict[str, Any]] = []
     for scene in dict.fromkeys(case.scene for case in made):
-        engine = adamo_vh.create_engine(scene)
+        engine, frames = adamo_vh.create_engine(scene), adamo_vh.FrameCache()
         for case in (case for case in made if case.scene == scene):
-            outcome = played(case, engine, arguments.model, arguments.resolution)
+            outcome = played(case, engine, arguments.model, arguments.resolution, frames)
             met, false = judged(case, outcome)
             rows.append(
                 {
@@ -270,6 +285,7 @@ def main() -> None:
     if arguments.json:
         print(json.dumps({"model": arguments.model, "episodes": rows}))
         return
+    print(f"{len(drawn)} drawn, {len(rows)} of them distinct")
     for labeling in dict.fromkeys(row["labeling"] for row in rows):
         of_it = [row for row in rows if row["labeling"] == labeling]
         possible = [row for row in of_it if row["possible"]]

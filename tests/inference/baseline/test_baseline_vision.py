@@ -13,11 +13,12 @@ from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.inference.baseline.language.requests import understand
 from adamo_vh.inference.baseline.mind.choosing import degree, thing_of
 from adamo_vh.inference.baseline.prompt.reading import Body, Listed, Prompt, Room
-from adamo_vh.inference.baseline.sight.kinds import classify, prototypes
+from adamo_vh.inference.baseline.sight.kinds import classify
 from adamo_vh.inference.baseline.sight.looking import boxed, sights
 from adamo_vh.inference.baseline.sight.marks import brightest, drawn_over, print_share
 from adamo_vh.inference.baseline.sight.measures import Sight, shares
 from adamo_vh.inference.baseline.sight.outlines import camera_of, misfits
+from adamo_vh.inference.baseline.sight.prototypes import prototypes
 from adamo_vh.inference.messages import ImagePart
 
 WOOD = (70, 105, 140)

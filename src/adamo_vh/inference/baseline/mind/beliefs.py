@@ -18,11 +18,11 @@ from adamo_vh.inference.baseline.sight.kinds import (
     class_of,
     classify,
     likeliest,
-    prototypes,
 )
 from adamo_vh.inference.baseline.sight.looking import boxed, sights
 from adamo_vh.inference.baseline.sight.measures import Sight, colour_words
 from adamo_vh.inference.baseline.sight.printed import WordReader
+from adamo_vh.inference.baseline.sight.prototypes import prototypes
 
 _NEVER_M = 99.0
 _HELD_CM3 = 300.0

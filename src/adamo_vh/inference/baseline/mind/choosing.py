@@ -14,14 +14,13 @@ from adamo_vh.inference.baseline.mind.memory import Memory, Stand, Thing
 from adamo_vh.inference.baseline.mind.searching import Stage
 from adamo_vh.inference.baseline.sight.kinds import (
     Beliefs,
-    Prototype,
     class_of,
     classify,
     likeliest,
-    prototypes,
     size_of,
 )
 from adamo_vh.inference.baseline.sight.measures import Sight, colour_words
+from adamo_vh.inference.baseline.sight.prototypes import Prototype, prototypes
 from adamo_vh.inference.baseline.tags import parts_of
 
 _SURE, _LIKELY, _AT_ALL = 0.5, 0.3, 0.12

@@ -1,12 +1,9 @@
-"""What people know about household things: usual sizes, colours, shapes, labels, white parts.
-
-Ordinary round numbers about each class in general. They stand in for the world knowledge that a
-learned model brings along, and are never about one certain object.
-"""
+"""Which kind of thing something is: by its tag, or by its volume and its looks."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -16,112 +13,8 @@ from numpy.typing import NDArray
 
 from adamo_vh.inference.baseline.sight.measures import COLOURS, Sight
 from adamo_vh.inference.baseline.sight.printed import named_kinds
+from adamo_vh.inference.baseline.sight.prototypes import prototypes
 from adamo_vh.inference.baseline.tags import parts_of
-
-
-@dataclass(frozen=True, slots=True)
-class Prototype:
-    """A class of things."""
-
-    name: str
-    size_m: tuple[float, float, float]
-    """Usual length, width and height at rest, length >= width, metres."""
-    colours: tuple[tuple[str, float], ...]
-    """Colours that such things often have, with how often."""
-    shape: tuple[str, ...]
-    """Words for its shape."""
-    white: float = 0.05
-    """How often it has white or cream parts."""
-    label: float = 0.03
-    """How often it carries printed text."""
-    transparent: bool = False
-    spread: float = 0.5
-    """How much the logarithm of the volume varies within the class (standard deviation)."""
-
-    @property
-    def volume_cm3(self) -> float:
-        """Volume of the usual box."""
-        length, width, height = self.size_m
-        return length * width * height * 1e6
-
-
-_METAL = (("grey", 0.5), ("yellow", 0.3), ("brown", 0.3))
-
-_ALL = (
-    Prototype("Lock", (0.05, 0.022, 0.07), _METAL, ("box",), spread=0.5),
-    Prototype(
-        "Flashlight", (0.17, 0.045, 0.045), (("black", 0.7), ("yellow", 0.4)),
-        ("long", "cylinder"), label=0.05,
-    ),
-    Prototype(
-        "Battery", (0.035, 0.03, 0.08),
-        (("black", 0.5), ("brown", 0.4), ("green", 0.3), ("grey", 0.2)),
-        ("cylinder", "long"), label=0.2, spread=0.8,
-    ),
-    Prototype(
-        "Tape", (0.13, 0.13, 0.045), (("blue", 0.3), ("grey", 0.3), ("brown", 0.3)),
-        ("round", "ring", "flat", "cylinder"), white=0.1, label=0.05, spread=0.5,
-    ),
-    Prototype(
-        "Screwdriver", (0.22, 0.025, 0.024), (("red", 0.4), ("grey", 0.5), ("yellow", 0.2)),
-        ("long",), spread=0.5,
-    ),
-    Prototype(
-        "PeanutButter", (0.10, 0.10, 0.15), (("brown", 0.7), ("red", 0.3), ("orange", 0.3)),
-        ("cylinder", "round"), white=0.2, label=0.95, spread=0.4,
-    ),
-    Prototype(
-        "TomatoSoup", (0.072, 0.072, 0.105), (("red", 0.8), ("grey", 0.4), ("white", 0.5)),
-        ("cylinder",), white=0.6, label=0.95, spread=0.4,
-    ),
-    Prototype(
-        "Pills", (0.055, 0.055, 0.09), (("orange", 0.6), ("brown", 0.4), ("white", 0.7)),
-        ("cylinder", "bottle"), white=0.8, label=0.9, spread=0.4,
-    ),
-    Prototype(
-        "Binoculars", (0.18, 0.16, 0.065), (("black", 0.9),), ("box",), spread=0.5,
-    ),
-    Prototype(
-        "Painkiller", (0.045, 0.045, 0.10), (("white", 0.9),),
-        ("cylinder", "bottle"), white=0.9, label=0.9, spread=0.4,
-    ),
-    Prototype(
-        "Lighter", (0.06, 0.02, 0.085), (("grey", 0.6), ("red", 0.2), ("yellow", 0.2)),
-        ("box", "flat"), spread=0.5,
-    ),
-    Prototype(
-        "Key", (0.06, 0.025, 0.003), (("yellow", 0.5), ("grey", 0.5), ("brown", 0.4)),
-        ("long", "flat"), spread=0.8,
-    ),
-    Prototype(
-        "WineBottle", (0.07, 0.07, 0.26),
-        (("green", 0.5), ("black", 0.6), ("red", 0.4), ("white", 0.4)),
-        ("bottle", "cylinder", "long"), white=0.6, label=0.95, spread=0.4,
-    ),
-    Prototype(
-        "Glass", (0.09, 0.09, 0.14), (("grey", 0.5),), ("cylinder", "round"),
-        transparent=True, spread=0.4,
-    ),
-    Prototype(
-        "Cup", (0.13, 0.10, 0.12),
-        (("orange", 0.25), ("blue", 0.25), ("red", 0.25), ("green", 0.2), ("white", 0.3)),
-        ("cylinder", "round"), white=0.25, label=0.05, spread=0.4,
-    ),
-    Prototype(
-        "IndoorPlant", (0.26, 0.26, 0.35), (("green", 0.95), ("brown", 0.5), ("orange", 0.3)),
-        ("irregular",), spread=0.7,
-    ),
-    Prototype(
-        "Plate", (0.25, 0.25, 0.03), (("red", 0.2), ("white", 0.5), ("blue", 0.2)),
-        ("round", "flat"), white=0.5, spread=0.4,
-    ),
-)  # fmt: skip
-
-
-@cache
-def prototypes() -> dict[str, Prototype]:
-    """All known classes by name."""
-    return {prototype.name: prototype for prototype in _ALL}
 
 
 @cache
@@ -130,9 +23,13 @@ def _by_lower_name() -> dict[str, str]:
 
 
 def class_of(tag: str) -> str | None:
-    """The class that a semantic tag names, or None for an opaque or unknown one."""
+    """The class that a semantic tag names, or None for an opaque or unknown one.
+
+    Its last word counts if the whole is not known: a "WoodenSpoon" is a spoon.
+    """
     name, _ = parts_of(tag)
-    return _by_lower_name().get(name.replace("_", "").lower())
+    known, words = _by_lower_name(), re.findall(r"[A-Z]?[a-z]+", name)
+    return known.get(name.replace("_", "").lower()) or known.get(words[-1].lower() if words else "")
 
 
 def size_of(name: str, volume_cm3: float) -> tuple[float, float]:
@@ -147,7 +44,7 @@ def size_of(name: str, volume_cm3: float) -> tuple[float, float]:
 
 
 Beliefs = Mapping[str, float]
-"""Probability of each class for one thing."""
+"""Probability of each class for one thing; what is left to 1 is that it is none of them."""
 Floats = NDArray[np.float64]
 
 _VIVID = {"grey": 0.0, "white": 0.0, "black": 0.5, "brown": 0.5}
@@ -161,6 +58,12 @@ _PLAIN_PX, _PLAIN_WEIGHT = 150, 2.0
 _WORD_WEIGHT = 5.0
 _LEAST_PIXELS = 30
 """A thing with fewer is judged by its volume alone."""
+_HEIGHT_SPREAD, _HEIGHT_OFF_M = 0.2, 0.012
+"""Within a class, as a logarithm; and what a height is off by."""
+_MOST_BY_HEIGHT = 4.0
+"""It may be on something that no point tells of."""
+_NONE_OF_THESE = math.exp(-7)
+"""Weight of all kinds that are not known; what fits none of the known ones is none of them."""
 
 
 def classify(tag: str, volume_cm3: float, sight: Sight | None) -> Beliefs:
@@ -174,13 +77,15 @@ def classify(tag: str, volume_cm3: float, sight: Sight | None) -> Beliefs:
     usual = _usual()
     off = (math.log(max(volume_cm3, 0.1)) - usual.log_volume) / usual.spread
     misfit = off * off / 2
+    if sight is not None and sight.height_m is not None:
+        misfit = misfit + _height_misfit(volume_cm3, sight.height_m)
     if sight is not None and sight.pixels >= _LEAST_PIXELS:
         if not sight.cut and sight.misfits:
             misfit = misfit + np.array([sight.misfits.get(name, 0.0) for name in usual.names])
         misfit = misfit + _colour_misfit(sight) + _print_misfit(sight) - _named(sight)
         misfit = misfit + _plain_misfit(sight)
-    weights = np.exp(-misfit)
-    total = float(weights.sum()) or 1.0
+    weights = usual.weight * np.exp(-misfit)
+    total = float(weights.sum()) + _NONE_OF_THESE
     return dict(zip(usual.names, (weights / total).tolist(), strict=True))
 
 
@@ -194,7 +99,10 @@ class _Usual:
     """All prototypes as arrays over the classes."""
 
     names: tuple[str, ...]
+    weight: Floats
     log_volume: Floats
+    log_height: Floats
+    """Of a thing of 1 cm3 with the usual proportions, metres."""
     spread: Floats
     label: Floats
     transparent: NDArray[np.bool_]
@@ -210,12 +118,21 @@ def _usual() -> _Usual:
         colours["white"] = max(colours.get("white", 0.0), prototype.white)
     return _Usual(
         tuple(p.name for p in known),
+        np.array([p.weight for p in known]),
         np.log([p.volume_cm3 for p in known]),
+        np.log([p.size_m[2] / np.cbrt(p.volume_cm3) for p in known]),
         np.array([p.spread for p in known]),
         np.array([p.label for p in known]),
         np.array([p.transparent for p in known]),
         1 - np.array([[colours.get(name, 0.0) for name in COLOURS] for colours in usual]),
     )
+
+
+def _height_misfit(volume_cm3: float, height_m: float) -> Floats:
+    """How unusual the height is for things of each class with this volume."""
+    usual = _usual().log_height + math.log(max(volume_cm3, 0.1)) / 3
+    off = (math.log(height_m) - usual) / np.hypot(_HEIGHT_SPREAD, _HEIGHT_OFF_M / np.exp(usual))
+    return np.asarray(np.minimum(off * off / 2, _MOST_BY_HEIGHT))
 
 
 def _colour_misfit(sight: Sight) -> Floats:
@@ -226,10 +143,10 @@ def _colour_misfit(sight: Sight) -> Floats:
         max(0.0, sight.share(name) - (_SHADING if name in ("grey", "black") else 0.0))
         for name in COLOURS
     ]
-    glassy = (1 - sight.clear) * (1.5 + 3.0 * vivid)
+    glassy = (1 - sight.clear) * (0.6 + 3.0 * vivid)
     usual = _usual()
     odd = usual.odd @ np.array(telling)
-    return np.where(usual.transparent, glassy, 2.5 * odd + 1.5 * sight.clear)
+    return np.where(usual.transparent, glassy, 3.0 * odd + 1.5 * sight.clear)
 
 
 def _print_misfit(sight: Sight) -> Floats:

@@ -29,6 +29,7 @@ from adamo_vh.inference.baseline.sight.marks import (
 from adamo_vh.inference.baseline.sight.measures import Sight, shares, white_level
 from adamo_vh.inference.baseline.sight.outlines import camera_of, misfits
 from adamo_vh.inference.baseline.sight.printed import WordReader
+from adamo_vh.inference.baseline.sight.standing import heights
 
 Masks = Mapping[str, tuple[Mask, float]]
 
@@ -61,6 +62,8 @@ def sights(
     if prompt.frame is None or not any(thing.box_px for thing in things):
         return {}
     found = _looked_at(prompt.frame.data, things, prompt.points_key, camera_of(prompt), outlines)
+    high = heights(things, prompt.points, prompt.room)
+    found = {tag: replace(sight, height_m=high.get(tag)) for tag, sight in found.items()}
     if reader is None:
         return found
     picture = decoded(prompt.frame.data)

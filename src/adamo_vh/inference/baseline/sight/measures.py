@@ -125,6 +125,8 @@ class Sight:
     """Printed words that were read on it."""
     cut: bool = False
     """Whether the box touches the edge of the frame."""
+    height_m: float | None = None
+    """How high it is, if a point tells how high the surface below it is."""
 
     def share(self, colour: str) -> float:
         """Share of one colour."""

@@ -13,16 +13,19 @@ from numpy.typing import NDArray
 
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.inference.baseline.prompt.reading import Listed, Prompt
-from adamo_vh.inference.baseline.sight.kinds import Prototype, prototypes
+from adamo_vh.inference.baseline.sight.marks import PixelBox
+from adamo_vh.inference.baseline.sight.prototypes import Prototype, prototypes
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 _TURNS = 8
 _RIM_POINTS = 12
-_SPREAD = 0.16
+_SPREAD = 0.2
 """Standard deviation of the logarithm of a side, within a class."""
 _BOX_OFF_PX = 1.5
+_LOPSIDED, _MIDDLE_OFF_PX = 1.5, 3.0
+"""From which on a side of a box is so much nearer to the middle that something hides a part."""
 _MOST = 12.0
 _NEAREST_M = 0.2
 
@@ -55,7 +58,9 @@ def misfits(things: Sequence[Listed], camera: Camera) -> Mapping[str, Mapping[st
     spans = np.maximum.reduceat(corners, outlines.starts, axis=1) - np.minimum.reduceat(
         corners, outlines.starts, axis=1
     )
-    seen = np.array([[(max(x1 - x0, 1), max(y1 - y0, 1))] for _, (x0, y0, x1, y1) in known], float)
+    middles = camera.project(centres[:, 0])[:, :2]
+    seen = np.array([_whole(box, *uv) for (_, box), uv in zip(known, middles, strict=True)])
+    seen = seen[:, None]
     # A box is told, or found in the picture, to about a pixel on either side.
     off = np.log(seen / np.maximum(spans, 1.0)) / np.hypot(_SPREAD, _BOX_OFF_PX / seen)
     best = np.minimum.reduceat((off**2).sum(axis=2) / 2, outlines.first_turns, axis=1)
@@ -65,6 +70,18 @@ def misfits(things: Sequence[Listed], camera: Camera) -> Mapping[str, Mapping[st
         for (thing, _), row, depth in zip(known, np.minimum(best, _MOST), nearest, strict=True)
         if depth >= _NEAREST_M / 2
     }
+
+
+def _whole(box: PixelBox, u: float, v: float) -> tuple[float, float]:
+    """Width and height of a box, with what is hidden of it: its middle is where the centre is."""
+    left, top, right, bottom = box
+    return _side(left, u, right), _side(top, v, bottom)
+
+
+def _side(low: float, middle: float, high: float) -> float:
+    longer, shorter = max(high - middle, middle - low), min(high - middle, middle - low)
+    is_hidden = longer > _LOPSIDED * max(shorter, 0.0) + _MIDDLE_OFF_PX
+    return max(2 * longer if is_hidden else high - low, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
