@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from tests.cli.process import adamo
 
 from adamo_vh.cognition.budget import Budget, BudgetGuard, Ledger
 from adamo_vh.cognition.profile import PROFILES
@@ -94,10 +93,7 @@ def test_no_conversation_is_begun_on_top_of_another(tmp_path: Path) -> None:
 
 
 def test_the_command_talks_through_a_pipe(tmp_path: Path) -> None:
-    chat = [sys.executable, "-m", "adamo_vh", "chat", "--out", str(tmp_path / "talk")]
-    run = subprocess.run(
-        chat, input="Pick the key\n\n", capture_output=True, text=True, check=False
-    )
-    assert run.returncode == 0, run.stderr
-    assert "Key_34" in run.stdout
-    assert "adamo-vh chat --resume" in run.stdout
+    run = adamo("chat", "--out", "talk", cwd=tmp_path, said=b"Pick the key\n\n")
+    assert run.code == 0, run.err
+    assert "Key_34" in run.out
+    assert "adamo-vh chat --resume" in run.out

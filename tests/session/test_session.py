@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -15,6 +12,7 @@ from typing import Annotated, Any
 
 import pytest
 from pydantic import Field
+from tests.cli.process import adamo
 from tests.fake_provider import FakeProvider, completion
 
 import adamo_vh
@@ -124,26 +122,20 @@ def test_what_is_no_model_is_said_to_be_none(engine: BuiltinEngine) -> None:
         run(engine, model=object())
 
 
-def test_money_without_a_price_is_refused_before_the_first_call(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "adamo_vh", "run", "look", "--tool-calls", "native"]
-    given = ["--model", "openai:nobody@http://127.0.0.1:9/v1", "--budget", "usd=1"]
-    environment = {**os.environ, "ADAMO_VH_NO_REMOTE": ""}
-    done = subprocess.run(
-        [*command, *given], cwd=tmp_path, capture_output=True, text=True, env=environment,
-        check=False,
-    )  # fmt: skip
-    assert done.returncode == 2, done.stderr
-    assert "No price is known" in done.stderr
+def test_money_without_a_price_is_refused_before_the_first_call(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ADAMO_VH_NO_REMOTE", "")
+    given = ("--model", "openai:nobody@http://127.0.0.1:9/v1", "--budget", "usd=1")
+    done = adamo("run", "look", "--tool-calls", "native", *given, cwd=tmp_path)
+    assert done.code == 2, done.err
+    assert "No price is known" in done.err
     assert not list((tmp_path / "runs").glob("*"))
     film = tmp_path / "film.webm"
     film.write_bytes(b"of an earlier run")
     for words in (["run", "look", "--video", str(film)], ["chat"]):
-        done = subprocess.run(
-            [sys.executable, "-m", "adamo_vh", *words, *given, "--out", str(tmp_path / "out")],
-            cwd=tmp_path, input="look\n", capture_output=True, text=True, env=environment,
-            check=False,
-        )  # fmt: skip
-        assert done.returncode == 2 and "No price is known" in done.stderr
+        done = adamo(*words, *given, "--out", "out", cwd=tmp_path, said=b"look\n")
+        assert done.code == 2 and "No price is known" in done.err
         assert not (tmp_path / "out").exists()
     assert film.read_bytes() == b"of an earlier run"
 
@@ -158,12 +150,9 @@ def test_a_price_is_asked_for_before_a_probe_is_paid(tmp_path: Path) -> None:
 
 
 def test_resume_takes_no_setting_that_it_would_not_heed(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "adamo_vh", "run", "--resume", str(tmp_path)]
-    done = subprocess.run(
-        [*command, "--task", "T9", "--seed", "0"], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 2
-    assert "takes no --task, --seed" in done.stderr
+    done = adamo("run", "--resume", ".", "--task", "T9", "--seed", "0", cwd=tmp_path)
+    assert done.code == 2
+    assert "takes no --task, --seed" in done.err
 
 
 @dataclass(frozen=True, slots=True)

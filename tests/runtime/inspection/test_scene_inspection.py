@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.cli.process import adamo
 
 from adamo_vh.errors import SceneError
 from adamo_vh.runtime.builtin import BuiltinEngine
@@ -109,17 +108,10 @@ def test_what_the_physics_refuses_is_an_error_that_names_the_fix(
 def test_a_pile_can_be_run_without_a_traceback(tmp_path: Path) -> None:
     path = tmp_path / "pile.toml"
     path.write_text(pile("tape", 100))
-    command = ["run", "Pick the tape", "--scene", str(path), "--model", "baseline"]
-    done = subprocess.run(
-        [sys.executable, "-m", "adamo_vh", *command],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        check=False,
-    )
-    assert done.returncode != 0
-    assert "Traceback" not in done.stderr
-    assert "objects 0 and 1 overlap; move one of them" in " ".join(done.stderr.split())
+    command = ("run", "Pick the tape", "--scene", str(path), "--model", "baseline")
+    done = adamo(*command, cwd=tmp_path)
+    assert done.code != 0
+    assert "objects 0 and 1 overlap; move one of them" in " ".join(done.err.split())
 
 
 @pytest.mark.parametrize(
@@ -144,14 +136,8 @@ def test_out_of_time_is_said(engine: BuiltinEngine) -> None:
 
 
 def check(path: Path) -> tuple[int, dict[str, Any]]:
-    done = subprocess.run(
-        [sys.executable, "-m", "adamo_vh", "scenes", "check", str(path), "--json"],
-        capture_output=True,
-        text=True,
-        cwd=path.parent,
-        check=False,
-    )
-    return done.returncode, json.loads(done.stdout)
+    done = adamo("scenes", "check", str(path), "--json", cwd=path.parent)
+    return done.code, json.loads(done.out)
 
 
 def test_the_command_prints_findings_and_writes_pictures(tmp_path: Path) -> None:
