@@ -15,6 +15,7 @@ from adamo_vh.cli.mcp_app import mcp_app
 from adamo_vh.cli.scenes_app import scenes_app
 from adamo_vh.cli.serve_app import serve_app
 from adamo_vh.cli.speech_app import speech_app
+from adamo_vh.cli.studio_app import studio_app
 from adamo_vh.cli.study_app import study_app
 from adamo_vh.cli.tasks_app import tasks_app
 from adamo_vh.inference.uris import HELP
@@ -36,6 +37,7 @@ app.add_typer(mcp_app)
 app.add_typer(engines_app)
 app.add_typer(serve_app)
 app.add_typer(speech_app, name="speech")
+app.add_typer(studio_app)
 
 _KEYS = ("token", "judge_token")
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]

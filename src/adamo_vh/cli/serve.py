@@ -57,7 +57,7 @@ def serve(
     from adamo_vh.service.engines.page import PAGE, page_folder
     from adamo_vh.service.hosting import Host, Terms
 
-    player_key, judge_key = _key(token, "--token"), _key(judge, "--judge")
+    player_key, judge_key = key_of(token, "--token"), key_of(judge, "--judge")
     own = () if is_loopback(address) or address in ("0.0.0.0", "::") else (address,)
     rules = Rules(MAX_BODY_BYTES, token=player_key, judge_token=judge_key, hosts=(*own, *hosts))
     folder = out or RUNS / f"served-{datetime.now(UTC):%Y%m%d-%H%M%S}"
@@ -105,7 +105,7 @@ def _is_remote(engine: str) -> bool:
     return engine == "remote"
 
 
-def _key(told: str, option: str) -> str:
+def key_of(told: str, option: str) -> str:
     """A token: as it is told, or made up.
 
     Raises:

@@ -11,8 +11,9 @@ import hmac
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from http.cookies import CookieError, SimpleCookie
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs, urlsplit
 
 from adamo_vh.serving.loopback import is_loopback
 from adamo_vh.serving.rate import Rate
@@ -21,6 +22,8 @@ TOKEN_VARIABLE = "ADAMO_VH_TOKEN"
 """Environment variable with what players, agents and engines bring, or must bring."""
 JUDGE_VARIABLE = "ADAMO_VH_JUDGE_TOKEN"
 """The same for a judge."""
+COOKIE = "adamo_token"
+"""Name of the cookie in which a browser brings the token."""
 WITH_BODY = ("POST", "PUT", "PATCH")
 _MAX_TARGET_BYTES = 8_000
 _MAX_HEADERS = 100
@@ -65,6 +68,9 @@ class Rules:
     """Of a WebSocket."""
     roomy: Mapping[str, int] = field(default_factory=dict)
     """Larger bodies and messages, by the path that they are for."""
+    browsed: str = ""
+    """The path under which a browser, which can send no header of its own, may bring the token: as
+    a cookie, or once in the address of the page itself. Empty for none."""
 
     def most_bytes(self, path: str, *, message: bool) -> int:
         """How large a body, or a message of a WebSocket, may be."""
@@ -81,6 +87,8 @@ class Asked:
     target_bytes: int
     header_count: int
     header_bytes: int
+    path: str = ""
+    query: str = ""
 
     @property
     def has_body(self) -> bool:
@@ -93,7 +101,9 @@ class Asked:
         pairs = [(n.decode("latin-1").lower(), v.decode("latin-1")) for n, v in scope["headers"]]
         target = len(scope.get("raw_path") or b"") + len(scope.get("query_string") or b"")
         size = sum(len(name) + len(value) for name, value in pairs)
-        return cls(scope.get("method", ""), dict(pairs), target, len(pairs), size)
+        query = (scope.get("query_string") or b"").decode("latin-1")
+        path = str(scope.get("path", ""))
+        return cls(scope.get("method", ""), dict(pairs), target, len(pairs), size, path, query)
 
 
 def admitted(asked: Asked, rules: Rules) -> Role | Refusal:
@@ -141,7 +151,7 @@ def _shapeless(asked: Asked, rules: Rules) -> Refusal | None:
 
 
 def _role(asked: Asked, rules: Rules) -> Role | Refusal:
-    brought = asked.headers.get("authorization", "").removeprefix("Bearer ").encode("latin-1")
+    brought = _brought(asked, rules).encode("latin-1", "replace")
     is_judge, is_player = (
         bool(token) and hmac.compare_digest(brought, token.encode())
         for token in (rules.judge_token, rules.token)
@@ -152,6 +162,22 @@ def _role(asked: Asked, rules: Rules) -> Role | Refusal:
     if not is_player and (rules.token or (rules.judge_token and brought)):
         return Refusal(401, "The token is missing or wrong; send it as bearer token.")
     return Role.PLAYER
+
+
+def _brought(asked: Asked, rules: Rules) -> str:
+    """The token that a request brings; empty for none."""
+    if header := asked.headers.get("authorization", ""):
+        return header.removeprefix("Bearer ")
+    root = rules.browsed
+    if not root or not (asked.path == root or asked.path.startswith(f"{root}/")):
+        return ""
+    if asked.path == f"{root}/" and (told := parse_qs(asked.query).get("token")):
+        return told[0]
+    try:
+        kept = SimpleCookie(asked.headers.get("cookie", "")).get(COOKIE)
+    except CookieError:
+        return ""
+    return kept.value if kept else ""
 
 
 def _host_name(host: str) -> str:

@@ -27,14 +27,26 @@ Tell = Callable[[Message, float], None]
 class Telling:
     """Tells what happens in one world. An observer of its events."""
 
-    def __init__(self, tell: Tell, href: Href, posing: Posing | None) -> None:
+    def __init__(
+        self,
+        tell: Tell,
+        href: Href,
+        posing: Posing | None,
+        thinking: Doing = "thinking",
+        *,
+        rests: bool = True,
+    ) -> None:
         """Begin.
 
         Args:
             tell: Takes the messages.
             href: Where a picture can be had.
             posing: Tells the poses; None if nothing is executed.
+            thinking: What is being done while the mind decides.
+            rests: Whether nothing is being done as soon as an instruction has ended.
         """
+        self._rests = rests
+        self._thinking = thinking
         self._tell_at = tell
         self._href = href
         self._posing = posing
@@ -68,16 +80,16 @@ class Telling:
             case Started():
                 self.doing = "seeing"
             case Observed():
-                self.doing = "thinking"
+                self.doing = self._thinking
             case Thought():
                 self.doing = "acting"
                 self._spend(Spent.on(event.reply))
             case Acted():
-                self.doing = "thinking"
+                self.doing = self._thinking
             case Lost():
                 self._spend(event.spent)
             case Ended():
-                self.doing = "idle"
+                self.doing = "idle" if self._rests else self.doing
                 if event.spent is not None:
                     self._spend(event.spent)
             case _:

@@ -1,0 +1,127 @@
+"""`adamo-vh studio`: the page on which one sees, talks to and replays a mind in a body."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import webbrowser
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from urllib.parse import quote
+
+from adamo_vh.cli.episode import RUNS
+from adamo_vh.cli.serve import NEW, key_of
+from adamo_vh.cli.terminal import say
+from adamo_vh.errors import ConfigError
+from adamo_vh.extras import extra
+from adamo_vh.record.run_folder import EVENTS, MANIFEST
+from adamo_vh.serving.admission import Rules
+from adamo_vh.serving.loopback import is_loopback
+from adamo_vh.study.store import is_study
+
+
+def studio(
+    runs: Sequence[Path],
+    address: str,
+    port: int,
+    out: Path | None,
+    *,
+    token: str,
+    hosts: Sequence[str],
+    models: Sequence[str],
+    scenes: Sequence[Path],
+    most_rooms: int,
+    resolution: str,
+    opens: bool,
+) -> None:
+    """Serve the studio until the process is told to stop; every record is whole then.
+
+    Args:
+        runs: Run folders, studies, or folders of runs to look at; the runs folder, if none.
+        address: Where to listen.
+        port: The port; 0 for a free one.
+        out: Where run folders of rooms go.
+        token: What visitors bring; empty for none.
+        hosts: Further names under which this machine may be asked.
+        models: Models that may be chosen beside those that are on offer.
+        scenes: Scene files that may be chosen.
+        most_rooms: So many rooms are open at once.
+        resolution: Of the pictures that a mind is shown.
+        opens: Whether the page is opened in a browser.
+
+    Raises:
+        ConfigError: A setting is wrong, the port is taken, or the extra `serve` is missing.
+    """
+    with extra("serve", "The studio"):
+        from adamo_vh.service.app import FACES, MAX_BODY_BYTES, serving
+        from adamo_vh.studio.face import AT, Studio, studio_face
+    from adamo_vh.service.hosting import Host, Terms
+    from adamo_vh.studio.library import Library
+    from adamo_vh.studio.meshes import Meshes
+    from adamo_vh.studio.offer import Offer
+    from adamo_vh.studio.rooms import Rooms, RoomTerms
+
+    for folder in runs:
+        _check(folder)
+    key = key_of(token, "--token")
+    own = () if is_loopback(address) or address in ("0.0.0.0", "::") else (address,)
+    rules = Rules(MAX_BODY_BYTES, token=key, hosts=(*own, *hosts), browsed=AT)
+    parent = out or RUNS
+    offer = Offer(models, scenes)
+    rooms = Rooms(parent, offer, RoomTerms(most=most_rooms, resolution=resolution))
+    shown = Studio(offer, Library([*(runs or ()), parent]), rooms, Meshes())
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    host = Host(parent / f"served-{datetime.now(UTC):%Y%m%d-%H%M%S}", Terms())
+    faces = (*FACES, studio_face(shown))
+    try:
+        with serving(host, address=address, port=port, rules=rules, faces=faces) as url:
+            page = f"{url}{AT}/" + (f"?token={quote(key)}" if key else "")
+            say(f"studio  {page}")
+            if token == NEW:
+                say(f"token   {key}")
+            say(f"records {parent}")
+            say("stop    Ctrl+C")
+            if opens:
+                webbrowser.open(page)
+            # The first visitor does not wait for what is always needed.
+            threading.Thread(target=_warm, args=(shown,), daemon=True).start()
+            stop.wait()
+    finally:
+        shown.close()
+        host.close_all()
+    say("stopped; every record is whole")
+
+
+def _check(folder: Path) -> None:
+    """Make sure that there is something to look at.
+
+    Raises:
+        ConfigError: There is not.
+    """
+    if not folder.is_dir():
+        raise ConfigError(
+            f"{folder} is no folder; name a run folder, a study, or a folder of runs."
+        )
+    has_runs = any(
+        (child / MANIFEST).is_file() or is_study(child) for child in folder.iterdir()
+        if child.is_dir()
+    )  # fmt: skip
+    if not ((folder / MANIFEST).is_file() or is_study(folder) or has_runs):
+        raise ConfigError(
+            f"{folder} holds no run ({MANIFEST} and {EVENTS}), no study and no folder with either."
+        )
+
+
+def _warm(shown: object) -> None:
+    from adamo_vh.errors import AdamoError
+    from adamo_vh.studio.face import Studio
+
+    assert isinstance(shown, Studio)
+    for make in (lambda: shown.meshes.figure("mara"), lambda: shown.meshes.scene("s1", 0)):
+        try:
+            make()
+        except AdamoError:
+            return
