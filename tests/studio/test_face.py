@@ -57,7 +57,8 @@ def track(served, name: str) -> dict:
         status, headers, body = served.get(path)
         if status != 202:
             assert status == 200, body
-            return json.loads(body)
+            told: dict = json.loads(body)
+            return told
         assert headers["retry-after"]
         time.sleep(1.0)
     raise AssertionError("the track was never made")

@@ -86,8 +86,7 @@ def studio(
             say("stop    Ctrl+C")
             if opens:
                 webbrowser.open(page)
-            # The first visitor does not wait for what is always needed.
-            threading.Thread(target=_warm, args=(shown,), daemon=True).start()
+            threading.Thread(target=shown.warm, daemon=True).start()
             stop.wait()
     finally:
         shown.close()
@@ -113,15 +112,3 @@ def _check(folder: Path) -> None:
         raise ConfigError(
             f"{folder} holds no run ({MANIFEST} and {EVENTS}), no study and no folder with either."
         )
-
-
-def _warm(shown: object) -> None:
-    from adamo_vh.errors import AdamoError
-    from adamo_vh.studio.face import Studio
-
-    assert isinstance(shown, Studio)
-    for make in (lambda: shown.meshes.figure("mara"), lambda: shown.meshes.scene("s1", 0)):
-        try:
-            make()
-        except AdamoError:
-            return

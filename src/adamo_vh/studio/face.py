@@ -6,7 +6,7 @@ import asyncio
 import gzip
 import json
 from collections.abc import AsyncIterator
-from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 from fastapi import APIRouter, FastAPI, Query, Request, Response, WebSocket
 from fastapi.responses import RedirectResponse
 
+from adamo_vh.errors import AdamoError
 from adamo_vh.record.run_folder import FRAMES, SCENE
 from adamo_vh.record.trajectory import frame_type
 from adamo_vh.service.app import Face
 from adamo_vh.service.hosting import NoSessionError
 from adamo_vh.serving.admission import COOKIE
+from adamo_vh.session.builtin import figure_names
 from adamo_vh.studio.files import PAGE, SAFE, page_file
 from adamo_vh.studio.library import Library, scene_of
 from adamo_vh.studio.live import Connection
@@ -45,6 +47,12 @@ class Studio:
     meshes: Meshes
     page: Path = PAGE
     """The built page."""
+
+    def warm(self) -> None:
+        """Make what is always needed, so that the first visitor does not wait for it."""
+        with suppress(AdamoError):
+            self.meshes.figure(figure_names()[0])
+            self.meshes.scene(self.offer.scenes()[0], 0)
 
     def close(self) -> None:
         """Close every room; every record is whole."""

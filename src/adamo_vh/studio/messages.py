@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from typing import Annotated, Any, ClassVar, Literal, cast
@@ -192,7 +192,7 @@ def status(doing: Doing, speed: float, spent: Spent, *, can_undo: bool) -> Messa
     }
 
 
-def asked(calls: list[Mapping[str, Any]], note: str) -> Message:
+def asked(calls: Sequence[Mapping[str, Any]], note: str) -> Message:
     """What she is about to do, if one lets her."""
     return {"type": "asked", "calls": calls, "note": note}
 
