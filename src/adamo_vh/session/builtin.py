@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -149,6 +150,8 @@ def scene_title(file: str) -> str:
 def scene_glb(file: str, variation: int = 0) -> bytes:
     """A whole scene as one GLB, with its objects where they come to rest.
 
+    It is kept in the cache: whoever asks again, also after a restart, has it at once.
+
     Args:
         file: Scene file or built-in name.
         variation: 0 is the scene as it stands.
@@ -156,14 +159,22 @@ def scene_glb(file: str, variation: int = 0) -> bytes:
     Raises:
         SceneError: The scene is unknown or wrong.
     """
+    from adamo_vh.runtime.assets.bake import cached
     from adamo_vh.runtime.human.looks import VARIANTS
+    from adamo_vh.runtime.scenes.glb import SOURCE
     from adamo_vh.runtime.scenes.glb import scene_glb as written
+    from adamo_vh.runtime.scenes.writing import scene_toml
     from adamo_vh.session.spare import engine_for
 
     scene = read_scene(file, variation)
-    with engine_for(file, VARIANTS[0], variation) as engine:
-        engine.reset(0)
-        return written(scene, engine.state().objects).content
+
+    def make() -> bytes:
+        with engine_for(file, VARIANTS[0], variation) as engine:
+            engine.reset(0)
+            return written(scene, engine.state().objects).content
+
+    digest = sha256(scene_toml(scene).encode() + SOURCE.read_bytes()).hexdigest()[:24]
+    return cached(f"scene_{digest}.glb", make)
 
 
 def figure_glb(who: str) -> bytes:

@@ -39,3 +39,17 @@ def test_reading_what_is_baked_removes_nothing(sets: Path) -> None:
     bake._remove_old_sets.cache_clear()
     bake.load_asset("plate")
     assert (sets / OLD).exists()
+
+
+def test_a_file_made_of_the_assets_is_made_once(tmp_path, monkeypatch):
+    monkeypatch.setenv("ADAMO_VH_CACHE_DIR", str(tmp_path))
+    made = []
+
+    def make():
+        made.append(1)
+        return b"content"
+
+    assert bake.cached("scene_1.glb", make) == bake.cached("scene_1.glb", make) == b"content"
+    assert made == [1]
+    bake.cache_file("").with_name("scene_1.glb").unlink()
+    assert bake.cached("scene_1.glb", make) == b"content" and made == [1, 1]

@@ -80,6 +80,24 @@ def load_built(name: str, build: Callable[[], Asset]) -> Asset:
     return asset
 
 
+def cached(name: str, make: Callable[[], bytes]) -> bytes:
+    """Return a file that was made of the assets before, or make and keep it.
+
+    Args:
+        name: Names the file and everything but the assets that it depends on.
+        make: Makes it.
+    """
+    path = cache_file("").with_name(name)
+    _hold(path.parent)
+    with contextlib.suppress(OSError):
+        return path.read_bytes()
+    content = make()
+    with contextlib.suppress(FileError):
+        write_whole(path, content)
+        _remove_old_sets(path.parent)
+    return content
+
+
 def cache_file(name: str) -> Path:
     """Where the baked asset lies, or will lie."""
     return cache_folder() / "assets" / _key() / f"{name}.npz"

@@ -11,6 +11,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,8 @@ from adamo_vh.runtime.assets.glb_writing import (
 from adamo_vh.runtime.scenes.scene import Scene
 from adamo_vh.runtime.world import load_room, scene_assets
 
+SOURCE = Path(__file__)
+"""What decides, beside the scene and its assets, how it is written."""
 _UPRIGHT = (-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
 """Quaternion (x, y, z, w): Z up to +Y."""
 _GRAIN_M = 1 / 2**14
