@@ -8,6 +8,7 @@ crosses, the boxes and the text mirror are always complete.
 from __future__ import annotations
 
 import io
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -178,7 +179,8 @@ def encoded(picture: Image.Image, image_format: ImageFormat, jpeg_quality: int) 
     if image_format is ImageFormat.JPEG:
         picture.save(buffer, "JPEG", quality=jpeg_quality)
     else:
-        picture.save(buffer, "PNG")
+        # Of drawn pictures, runs alone are packed as small, in a quarter of the time.
+        picture.save(buffer, "PNG", compress_type=zlib.Z_RLE)
     return Frame(buffer.getvalue(), f"image/{image_format}", picture.width, picture.height)
 
 

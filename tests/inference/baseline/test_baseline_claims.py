@@ -28,7 +28,7 @@ def world(request):
     made.close()
 
 
-def _play(world, text: str, resolution: tuple[int, int] = _LARGER) -> Outcome:
+def _play(world, text: str, resolution: tuple[int, int]) -> Outcome:
     scene, engine = world
     return played(Case(text, "", scene, "sem", "paper"), engine, "baseline", resolution)
 
@@ -89,7 +89,8 @@ def _everyday(world, line: int, must: bool = True) -> bool:
 def test_what_is_not_so_is_said(world, text, says, never):
     if world[0] == "s2" and "battery" in text:
         pytest.skip("the other battery may be out of view")
-    answer = _play(world, text).answer
+    coloured = "green" in text or "blue" in text
+    answer = _play(world, text, _LARGER if coloured else _SMALL).answer
     assert says in answer
     assert never.strip("^") not in answer[: 4 if never[0] == "^" else None]
 

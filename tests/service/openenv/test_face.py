@@ -11,10 +11,8 @@ from typing import Any
 
 import httpx
 import pytest
-import schemathesis
 from hypothesis import given
 from PIL import Image
-from schemathesis.core.result import Ok
 from tests.service.conftest import Serve
 from tests.service.test_published import FEW
 from websockets.sync.client import ClientConnection, connect
@@ -245,6 +243,9 @@ def test_strangers_are_refused_as_on_every_face(url: str) -> None:
 
 
 def test_the_server_keeps_to_what_it_publishes(serve: Serve) -> None:
+    import schemathesis
+    from schemathesis.core.result import Ok
+
     unhurried = Rules(100_000, rate=Rate(per_s=0))
     url = serve(unhurried, most_sessions=100_000, resolution="64x64")[0] + "/openenv"
     schema = schemathesis.openapi.from_url(f"{url}/openapi.json")
@@ -254,7 +255,7 @@ def test_the_server_keeps_to_what_it_publishes(serve: Serve) -> None:
 
         @FEW
         @given(case=operation.as_strategy())
-        def check(case: schemathesis.Case) -> None:
+        def check(case: Any) -> None:
             # Which splits, tasks and sessions there are, no schema says.
             left_out = [schemathesis.checks.positive_data_acceptance]
             case.call_and_validate(timeout=30, excluded_checks=left_out)
