@@ -227,7 +227,8 @@ def export(
         str,
         typer.Option(
             help="sft (chat examples for fine-tuning), parquet (a data set for Hugging Face), "
-            "atif (trajectories), inspect (logs of Inspect AI) or rerun (.rrd recordings)."
+            "atif (trajectories), inspect (logs of Inspect AI), rerun (.rrd recordings) or page "
+            "(an HTML file each that shows it in 3D)."
         ),
     ],
     out: Annotated[Path, typer.Option(help="A new folder.")],

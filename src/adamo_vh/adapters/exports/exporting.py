@@ -45,6 +45,7 @@ def export(
     *,
     choice: Choice | None = None,
     form: Form | None = None,
+    write: Write | None = None,
 ) -> Exported:
     """Write recorded episodes in the format of another tool; the folder appears when all is there.
 
@@ -54,6 +55,7 @@ def export(
         out: A new folder.
         choice: Which episodes are wanted; all by default.
         form: How they are written.
+        write: Writes a format that is none of these, whatever it is called.
 
     Raises:
         ConfigError: The format is unknown, lacks its extra, or the folder is in use.
@@ -61,15 +63,17 @@ def export(
         FileError: The folder cannot be written.
     """
     folder = Path(out)
-    if to.lower() not in FORMATS:
+    if write is None and to.lower() not in FORMATS:
         raise ConfigError(f"There is no format {to!r}. Use one of {', '.join(FORMATS)}.")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ConfigError(f"{folder} already holds something; name a new folder for the export.")
-    module, name = FORMATS[to.lower()].split(".")
-    write = cast(Write, getattr(import_module(f"{__package__}.{module}"), name))
+    if write is None:
+        module, name = FORMATS[to.lower()].split(".")
+        write = cast(Write, getattr(import_module(f"{__package__}.{module}"), name))
     problems: list[str] = []
     episodes = recorded(map(Path, runs), choice, problems)
-    count = _whole(folder, lambda half: write(episodes, half, form or Form()))
+    writes, told = write, form or Form()
+    count = _whole(folder, lambda half: writes(episodes, half, told))
     return Exported(folder, count, tuple(problems))
 
 
