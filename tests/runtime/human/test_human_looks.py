@@ -16,6 +16,7 @@ from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.runtime.assets.glb_writing import linear
 from adamo_vh.runtime.human.clips import Clip
+from adamo_vh.runtime.human.face import moving_face
 from adamo_vh.runtime.human.glb import write_glb
 from adamo_vh.runtime.human.looks import HEAD_GARMENTS, VARIANTS, load_figure
 from adamo_vh.runtime.human.skeleton import EYES, INDEX, JOINTS, REST, Pose, joint_frames
@@ -249,7 +250,12 @@ def test_a_glb_holds_the_meshes_the_skeleton_and_the_clips(tmp_path, figure):
     path = tmp_path / "person.glb"
     write_glb(path, figure, [clip])
     gltf, binary = read_glb(path)
-    assert len(gltf["meshes"]) == len(figure.garments)
+    face = moving_face(figure)
+    assert [mesh["name"] for mesh in gltf["meshes"]] == [g.name for g in face.figure.garments]
+    for mesh in gltf["meshes"]:
+        names = mesh.get("extras", {}).get("targetNames", [])
+        assert names == list(face.shapes.get(mesh["name"], {}))
+        assert len(mesh["primitives"][0].get("targets", [])) == len(names)
     assert [gltf["nodes"][n]["name"] for n in gltf["skins"][0]["joints"]] == list(JOINTS)
     assert [a["name"] for a in gltf["animations"]] == ["bend"]
     bends = {c["target"]["node"]: c for c in gltf["animations"][0]["channels"]}
@@ -269,7 +275,7 @@ def test_a_glb_stands_upright_and_looks_along_z(tmp_path):
     write_glb(path, figure)
     scene = trimesh.load_scene(path)
     assert {name: len(mesh.faces) for name, mesh in scene.geometry.items()} == {
-        garment.name: len(garment.faces) for garment in figure.garments
+        garment.name: len(garment.faces) for garment in moving_face(figure).figure.garments
     }
     # In the rest pose the root's turn is all that a skin adds to its vertices.
     turn = scene.graph.get("human")[0]

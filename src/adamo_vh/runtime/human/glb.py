@@ -6,11 +6,12 @@ vertices, joints and clips stay in the body frame.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from adamo_vh.files import write_whole
 from adamo_vh.geometry import Array
@@ -25,6 +26,7 @@ from adamo_vh.runtime.assets.glb_writing import (
     add_material,
 )
 from adamo_vh.runtime.human.clips import Clip
+from adamo_vh.runtime.human.face import moving_face
 from adamo_vh.runtime.human.looks import Figure, Garment
 from adamo_vh.runtime.human.skeleton import JOINTS, PARENTS, REST
 
@@ -46,18 +48,21 @@ def write_glb(path: Path, figure: Figure, clips: Iterable[Clip] = ()) -> None:
 def figure_glb(figure: Figure, clips: Iterable[Clip] = ()) -> bytes:
     """A figure with its motions; three.js and others play the clips by name.
 
+    The face has the morph targets of `face.SHAPES`.
+
     Args:
         figure: The looks.
         clips: Motions; they keep their names.
     """
+    face = moving_face(figure)
     writer = GlbWriter()
     writer.json["asset"] = {"version": "2.0", "generator": "ADAMO"}
     writer.json["scene"] = 0
     skin = _add_skeleton(writer)
     # Only joints place a skinned mesh, so the specification wants it beside them, not below.
     roots = [0]
-    for garment in figure.garments:
-        mesh = _add_mesh(writer, garment)
+    for garment in face.figure.garments:
+        mesh = _add_mesh(writer, garment, face.shapes.get(garment.name, {}))
         roots.append(writer.add("nodes", {"name": garment.name, "mesh": mesh, "skin": skin}))
     writer.json["scenes"] = [{"name": figure.variant, "nodes": roots}]
     for clip in clips:
@@ -94,7 +99,9 @@ def _add_skeleton(writer: GlbWriter) -> int:
     )
 
 
-def _add_mesh(writer: GlbWriter, garment: Garment) -> int:
+def _add_mesh(
+    writer: GlbWriter, garment: Garment, shapes: Mapping[str, NDArray[np.float32]]
+) -> int:
     # A joint without weight must be number 0.
     joints = np.where(garment.weights > 0, garment.bone_ids, 0)
     # glTF counts v downward.
@@ -107,14 +114,21 @@ def _add_mesh(writer: GlbWriter, garment: Garment) -> int:
         "WEIGHTS_0": writer.accessor(garment.weights, "VEC4", FLOAT, VERTICES),
     }
     wide = len(garment.vertices) > 65535
-    primitive = {
+    primitive: dict[str, Any] = {
         "attributes": attributes,
         "indices": writer.accessor(
             garment.faces.ravel(), "SCALAR", INT if wide else SHORT, INDICES
         ),
         "material": add_material(writer, garment.material),
     }
-    return writer.add("meshes", {"name": garment.name, "primitives": [primitive]})
+    mesh: dict[str, Any] = {"name": garment.name, "primitives": [primitive]}
+    if shapes:
+        primitive["targets"] = [
+            {"POSITION": writer.accessor(moves, "VEC3", FLOAT)} for moves in shapes.values()
+        ]
+        mesh["weights"] = [0.0] * len(shapes)
+        mesh["extras"] = {"targetNames": list(shapes)}
+    return writer.add("meshes", mesh)
 
 
 def _add_clip(writer: GlbWriter, clip: Clip) -> None:
