@@ -1,20 +1,24 @@
 """How often the diagnosis is right: players that fail in one known way each, and hand labels.
 
-    python benchmarks/diagnosis.py [--scene s1] [--labeling sem] [--way loop] [--tasks 2]
-        [--seed 0] [--labelled] [--out DIR] [--misses] [--json]
+    python benchmarks/diagnosis.py [--scene s1] [--labeling sem] [--variation 0] [--way loop]
+        [--tasks 2] [--seed 0] [--labelled] [--out DIR] [--misses] [--json]
 
-Scene, labeling and way may be repeated. Each way is played in so many tasks that it fits, of each
-scene and labeling. What the player was built to do wrong is what the diagnosis should say. With
-`--labelled`, natural failures are played instead, and what is expected was told by a person who
-read them before any rule did: `labelled.tsv`.
+Scene, labeling, variation and way may be repeated. Each way is played in so many tasks that it
+fits, of each scene, variation and labeling. The rules were written on the scenes as they are
+(variation 0); test variations, from 1000, show what they are worth elsewhere. What the player was
+built to do wrong is what the diagnosis should say. With `--labelled`, natural failures are played
+instead, and what is expected was told by a person who read them before any rule did:
+`labelled.tsv`.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import itertools
 import json
 import random
+import sys
 import tempfile
 import time
 from collections import Counter
@@ -22,8 +26,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-
-from benchmarks.failing import WAYS, Player, Way
 
 import adamo_vh
 from adamo_vh.analysis.diagnosis import Code, FailureClass
@@ -33,6 +35,9 @@ from adamo_vh.episode.result import EpisodeResult
 from adamo_vh.perception import Labeling
 from adamo_vh.record.termination import Limits
 from adamo_vh.session.explaining import explain_run
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))  # As a file it stands in no package.
+from benchmarks.failing import WAYS, Player, Way
 
 LABELLED = Path(__file__).with_name("labelled.tsv")
 """Natural failures: scene, labeling, task and player, the code, and a sentence of reason."""
@@ -61,6 +66,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--scene", action="append")
     parser.add_argument("--labeling", action="append", type=Labeling)
+    parser.add_argument("--variation", action="append", type=int, help="of the scenes; 0 alone")
     parser.add_argument("--way", action="append")
     parser.add_argument("--tasks", type=int, default=2, help="tasks for each way")
     parser.add_argument("--seed", type=int, default=0)
@@ -72,8 +78,9 @@ def main() -> None:
     trials: list[Trial] = []
     with tempfile.TemporaryDirectory() as folder:
         out = arguments.out or Path(folder)
-        for scene in arguments.scene or ["s1", "s2"]:
-            engine = adamo_vh.create_engine(scene)
+        scenes = arguments.scene or ["s1", "s2"]
+        for scene, variation in itertools.product(scenes, arguments.variation or [0]):
+            engine = adamo_vh.create_engine(scene, variation=variation)
             played = _labelled if arguments.labelled else _played
             for trial in played(engine, out, arguments):
                 trials.append(trial)
@@ -93,7 +100,7 @@ def _played(engine: World, out: Path, arguments: argparse.Namespace) -> Iterator
             continue
         for labeling in arguments.labeling or list(Labeling):
             fitting = [task for task in TASKS if way.fits(task, labeling)]
-            lots = random.Random(f"{way.name} {labeling} {engine.scene.name} {arguments.seed}")
+            lots = random.Random(f"{way.name} {labeling} {engine.scene.full_name} {arguments.seed}")
             for task in lots.sample(fitting, min(arguments.tasks, len(fitting))):
                 trial = _trial(engine, out, way, task, labeling, arguments.seed)
                 if trial is not None:
@@ -104,7 +111,8 @@ def _trial(
     engine: World, out: Path, way: Way, task: Task, labeling: Labeling, seed: int
 ) -> Trial | None:
     """Play one way; None if it did not fail after all."""
-    name = f"{engine.scene.name}-{labeling}-{task.id}-{way.name}-{seed}"
+    place = engine.scene.full_name.replace(" ", "-")
+    name = f"{place}-{labeling}-{task.id}-{way.name}-{seed}"
     engine.reset(0)
     player = Player(way, task, engine, labeling, seed)
     result = adamo_vh.run_episode(

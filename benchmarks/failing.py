@@ -47,7 +47,7 @@ class Player:
             seed: Of what is left open: which object, which place, which words.
         """
         self.task, self.world, self.labeling = task, world, labeling
-        self.lots = random.Random(f"{way.name} {task.id} {labeling} {world.scene.name} {seed}")
+        self.lots = random.Random(f"{way.name} {task.id} {labeling} {world.scene.full_name} {seed}")
         self.seen: set[int] = set()
         self.goals = tuple(goal for goal in task.conditions if isinstance(goal, Aim))
         self._name = way.name

@@ -10,7 +10,7 @@ import pytest
 from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.errors import ConfigError
 from adamo_vh.session.generating import generate, write_task
-from adamo_vh.session.proving import LUCK
+from adamo_vh.session.proving import LUCK, is_settled
 
 
 def test_a_task_is_proved_and_written(tmp_path: Path) -> None:
@@ -39,3 +39,13 @@ def test_what_is_wrong_is_told_before_anything_is_made(
 ) -> None:
     with pytest.raises(ConfigError, match=said):
         next(generate(**{"seed": 0, "count": 1, **arguments}))
+
+
+@pytest.mark.parametrize("completions", [[0.0] * 20, [1.0] * 20, [0.5, 0.0, 0.0, 0.0] * 5])
+def test_no_more_is_played_by_lot_than_settles_it(completions: list[float]) -> None:
+    played = next(
+        (n for n in range(20) if is_settled(sum(completions[:n]), n, len(completions))), 20
+    )
+    assert 0 < played < 20
+    is_luck = sum(completions) / 20 >= LUCK
+    assert (sum(completions[:played]) / played >= LUCK) is is_luck

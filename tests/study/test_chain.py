@@ -17,6 +17,7 @@ from adamo_vh.record.signing import Signer, fingerprint
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.session.verifying import Verified
 from adamo_vh.study.chain import CHAIN, read_chain
+from adamo_vh.study.index import Index
 from adamo_vh.study.merging import merge
 from adamo_vh.study.plan import plan
 from adamo_vh.study.rescoring import score_again
@@ -188,3 +189,21 @@ def test_new_scores_are_sealed_and_chained(tmp_path: Path) -> None:
     score_again(tmp_path, write=True)
     assert _runs(tmp_path)[KEYS[0]].problems == ()
     assert verify_chain(tmp_path).problems == ()
+
+
+def test_going_on_links_nothing_that_was_changed_behind_its_back(tmp_path: Path) -> None:
+    _filled(tmp_path)
+    _played_again(tmp_path, KEYS[1])
+    Store(tmp_path, STUDY, EPISODES).close()
+    assert len(read_chain(tmp_path)) == 3
+    assert f"{KEYS[1]} has another result" in verify_chain(tmp_path).problems[0]
+
+
+def test_new_scores_are_chained_though_the_command_was_killed_before(tmp_path: Path) -> None:
+    _filled(tmp_path)
+    # As it stands in the moment after a new result was written: its row is gone already.
+    Index(tmp_path).drop([KEYS[0]])
+    _played_again(tmp_path, KEYS[0])
+    Store(tmp_path, STUDY, EPISODES).close()
+    found = verify_chain(tmp_path)
+    assert (found.links, found.repeated, found.problems) == (4, (KEYS[0],), ())

@@ -96,6 +96,15 @@ class Chain:
         append_line(self._path, json.dumps(asdict(added)).encode())
         self._last, self._linked[episode] = link, added
 
+    def holds(self, episode: str) -> bool:
+        """Whether a result of an episode is linked and, if there is a signer, signed.
+
+        Args:
+            episode: Its key.
+        """
+        link = self._linked.get(episode)
+        return link is not None and self._is_enough(link)
+
     def _is_enough(self, link: Link) -> bool:
         """Whether a link need not be signed, or is."""
         return self._signer is None or link.signature is not None

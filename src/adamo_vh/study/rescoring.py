@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from adamo_vh.analysis.diagnosis.finding import DIAGNOSIS
 from adamo_vh.benchmark.checkers import Score
-from adamo_vh.episode.result import (
-    EpisodeResult,
-    read_manifest,
-    read_result,
-    summarise,
-)
+from adamo_vh.episode.result import read_manifest, read_result, summarise
 from adamo_vh.episode.sealing import write_result
 from adamo_vh.errors import AdamoError, RecordError
 from adamo_vh.record.run_folder import MANIFEST, RESULT, FolderLock
 from adamo_vh.record.trajectory import read_trajectory
 from adamo_vh.study.chain import Chain
-from adamo_vh.study.store import episode_folder, is_study, read_planned, reindex
+from adamo_vh.study.index import Index
+from adamo_vh.study.store import episode_folder, gathered, is_study, read_planned
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,45 +74,51 @@ def score_again(folder: Path, *, write: bool = False) -> tuple[Rescored, ...]:
     if not is_study(folder):
         if not (folder / MANIFEST).is_file():
             raise RecordError(f"{folder} is neither a run folder nor the folder of a study.")
-        return (_again(folder, str(folder), write),)
+        return (_again(folder, str(folder), _nothing if write else None),)
     _, episodes = read_planned(folder)
     runs = {one.key: episode_folder(folder, one.key) for one in episodes}
-    found = tuple(_again(run, key, write) for key, run in runs.items() if (run / RESULT).is_file())
-    changed = [one.episode for one in found if one.changed]
-    if write and changed:
-        with FolderLock(folder):
-            chain = Chain(folder)
-            for key in changed:
-                chain.add(key, runs[key])
-        reindex(folder)
-    return found
+    ended = {key: run for key, run in runs.items() if (run / RESULT).is_file()}
+    if not write:
+        return tuple(_again(run, key) for key, run in ended.items())
+    with FolderLock(folder):
+        index, chain, found = Index(folder), Chain(folder), []
+        for key, run in ended.items():
+            # A row that is not true any more is gone before the result changes, so that whoever
+            # is stopped between the two leaves a result that is read and linked when it goes on.
+            found.append(_again(run, key, partial(index.drop, [key])))
+            if found[-1].changed:
+                chain.add(key, run)
+        if any(one.changed for one in found):
+            outcomes, _ = gathered(folder, index.read(), episodes)
+            index.replace(outcomes.values())
+    return tuple(found)
 
 
-def _again(run: Path, name: str, write: bool) -> Rescored:
+def _nothing() -> None:
+    """A run on its own is in no index."""
+
+
+def _again(run: Path, name: str, writing: Callable[[], None] | None = None) -> Rescored:
+    """Score one episode.
+
+    Args:
+        run: Its run folder.
+        name: What it is called.
+        writing: Keep a new score, and call this before; the old one stays without.
+    """
     try:
         before = read_result(run)
         if before is None:
             raise RecordError(f"{run} has not ended; there is nothing to score.")
-        after = rescored(run, before)
+        recorded = read_trajectory(run)
+        place = Path(before.run) if before.run else None
+        after = summarise(read_manifest(run), recorded, before.final, place)
     except AdamoError as error:
         return Rescored(name, None, None, str(error))
     again = Rescored(name, before.score, after.score)
-    if write and again.changed:
+    if writing is not None and again.changed:
         with FolderLock(run):
-            write_result(run, after, read_trajectory(run))
+            writing()
+            write_result(run, after, recorded)
             (run / DIAGNOSIS).unlink(missing_ok=True)
     return again
-
-
-def rescored(run: Path, before: EpisodeResult) -> EpisodeResult:
-    """The result of a run as today's checkers see it.
-
-    Args:
-        run: The run folder.
-        before: The result that is on record; holds the world at the end.
-
-    Raises:
-        RecordError: The record is damaged.
-    """
-    manifest, trajectory = read_manifest(run), read_trajectory(run)
-    return summarise(manifest, trajectory, before.final, Path(before.run) if before.run else None)

@@ -186,13 +186,18 @@ class Store:
             stack.enter_context(FolderLock(folder))
             self._check(study)
             self._chain = Chain(folder, signer)
-            self.outcomes, self.damaged = gathered(folder, self._index.read(), episodes)
+            known = self._index.read()
+            self.outcomes, self.damaged = gathered(folder, known, episodes)
             write_study(folder, study, episodes)
-            # What was finished, or scored again, in the moment before everything was killed.
-            for key in self.outcomes:
+            # What was finished, or scored again, in the moment before everything was killed: a
+            # row is written after its link, and taken out before its result changes.
+            for key, outcome in self.outcomes.items():
+                if known.get(key) is outcome and self._chain.holds(key):
+                    continue
                 with suppress(RecordError):  # A damaged result stays out, and verify-run says so.
                     self._chain.add(key, episode_folder(folder, key))
-            self._index.replace(self.outcomes.values())
+            if known != self.outcomes:
+                self._index.replace(self.outcomes.values())
             self._closing.enter_context(stack.pop_all())
 
     def _check(self, study: Study) -> None:

@@ -9,10 +9,10 @@ import pytest
 
 from adamo_vh.analysis.paper.printed import ABLATIONS, AVERAGES, BACKBONES, FAILURES
 from adamo_vh.analysis.paper.published import (
-    PaperCell,
+    PublishedCell,
     chosen,
-    paper_figures,
     published,
+    published_figures,
 )
 from adamo_vh.analysis.ranks import rank_of
 from adamo_vh.analysis.statistics import interval
@@ -31,7 +31,7 @@ def test_every_cell_of_the_matrix_is_there_once() -> None:
 @pytest.mark.parametrize("row", AVERAGES, ids=lambda row: f"{row.model}-{row.labeling}-{row.scene}")
 def test_printed_averages_are_those_of_the_published_cells(row) -> None:
     scenes = [row.scene] if row.scene else None
-    (found,) = paper_figures(chosen(scenes=scenes, labelings=[row.labeling], model=row.model))
+    (found,) = published_figures(chosen(scenes=scenes, labelings=[row.labeling], model=row.model))
     assert found.completion == pytest.approx(row.completion, abs=0.006)
     assert found.walk == pytest.approx(row.walk, abs=0.006)
     # The paper counts the first view among the Looks.
@@ -43,7 +43,7 @@ def test_printed_averages_are_those_of_the_published_cells(row) -> None:
 
 @pytest.mark.parametrize("model", BACKBONES)
 def test_printed_backbone_means_too(model: str) -> None:
-    (found,) = paper_figures(chosen(model=model))
+    (found,) = published_figures(chosen(model=model))
     completion, seconds, calls = BACKBONES[model]
     assert found.completion == pytest.approx(completion, abs=0.006)
     assert found.seconds_per_call == pytest.approx(seconds, rel=0.03)
@@ -74,7 +74,7 @@ def test_the_baseline_of_every_ablation_is_the_same_study() -> None:
     assert known == [0.835, 0.142, 0.658, 0.311]
 
 
-def _repetitions(cell: PaperCell) -> list[float]:
+def _repetitions(cell: PublishedCell) -> list[float]:
     """Episodes of a cell with one condition, whose mean and deviation are the published ones."""
     done = round(cell.completion * cell.n)
     return [1.0] * done + [0.0] * (cell.n - done)
@@ -83,7 +83,7 @@ def _repetitions(cell: PaperCell) -> list[float]:
 def test_an_interval_from_deviations_is_that_of_the_episodes() -> None:
     # Tasks with a single condition can be told apart into their episodes.
     cells = chosen(tasks=["T1", "T2", "T3", "T4", "T5", "T6"], model="G4O", labelings=["opaq"])
-    (found,) = paper_figures(cells)
+    (found,) = published_figures(cells)
     groups = [_repetitions(cell) for cell in cells]
     known = interval(groups, found.completion)
     assert known is not None
@@ -93,7 +93,9 @@ def test_an_interval_from_deviations_is_that_of_the_episodes() -> None:
 
 
 def test_what_always_went_the_same_way_is_not_certain() -> None:
-    (found,) = paper_figures(chosen(tasks=["T1"], scenes=["s1"], labelings=["sem"], model="G4O"))
+    (found,) = published_figures(
+        chosen(tasks=["T1"], scenes=["s1"], labelings=["sem"], model="G4O")
+    )
     assert (found.completion, found.repeat.high) == (1.0, 1.0)
     # The rule of three: of 15 that agreed.
     assert found.repeat.low == pytest.approx(0.05 ** (1 / 15))
@@ -118,11 +120,11 @@ def test_cells_are_chosen_by_what_they_are(wanted: dict[str, Any], count: int) -
 
 
 def test_of_no_cells_there_are_no_figures() -> None:
-    assert paper_figures(chosen(tasks=[])) == ()
+    assert published_figures(chosen(tasks=[])) == ()
 
 
 def test_the_paper_counts_each_cell_once_whatever_it_lost() -> None:
-    (found,) = paper_figures(chosen(scenes=["s1"], labelings=["opaq"], model="G4O"))
+    (found,) = published_figures(chosen(scenes=["s1"], labelings=["opaq"], model="G4O"))
     cells = chosen(scenes=["s1"], labelings=["opaq"], model="G4O")
     assert {cell.n for cell in cells} != {15}
     assert found.completion == pytest.approx(fmean(cell.completion for cell in cells))
@@ -132,7 +134,7 @@ def test_the_paper_counts_each_cell_once_whatever_it_lost() -> None:
 @pytest.mark.parametrize(
     "cell", published(), ids=lambda c: f"{c.scene}{c.labeling}{c.model}{c.task}"
 )
-def test_a_published_cell_agrees_with_itself(cell: PaperCell) -> None:
+def test_a_published_cell_agrees_with_itself(cell: PublishedCell) -> None:
     assert 13 <= cell.n <= 15
     assert 0.0 <= cell.completion <= 1.0 and 0.0 <= cell.deviation <= 0.6
     calls = cell.walk + cell.look + cell.pick + cell.drop

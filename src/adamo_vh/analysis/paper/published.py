@@ -14,7 +14,7 @@ from adamo_vh.analysis.statistics import Interval, agreement, around, interval, 
 
 
 @dataclass(frozen=True, slots=True)
-class PaperCell:
+class PublishedCell:
     """One cell of the paper: the means of its repetitions."""
 
     scene: str
@@ -40,7 +40,7 @@ class PaperCell:
 
 
 @dataclass(frozen=True, slots=True)
-class PaperFigures:
+class PublishedFigures:
     """Means over some cells of one of the paper's models."""
 
     model: str
@@ -64,12 +64,12 @@ class PaperFigures:
 
 
 @cache
-def published() -> tuple[PaperCell, ...]:
+def published() -> tuple[PublishedCell, ...]:
     """All cells."""
     text = (resources.files(__package__) / "cells.csv").read_text(encoding="utf-8")
     rows = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
     return tuple(
-        PaperCell(
+        PublishedCell(
             scene=row["scene"].lower(),
             labeling=row["labeling"].lower(),
             model=row["model"],
@@ -98,7 +98,7 @@ def chosen(
     labelings: Collection[str] | None = None,
     tasks: Collection[str] | None = None,
     model: str | None = None,
-) -> tuple[PaperCell, ...]:
+) -> tuple[PublishedCell, ...]:
     """The cells of some scenes, labelings, tasks and one model; of all where nothing is said."""
 
     def among(value: str, allowed: Collection[str] | None) -> bool:
@@ -114,19 +114,19 @@ def chosen(
     )
 
 
-def paper_figures(cells: Iterable[PaperCell]) -> tuple[PaperFigures, ...]:
+def published_figures(cells: Iterable[PublishedCell]) -> tuple[PublishedFigures, ...]:
     """The means of each model over its cells, each cell counted once."""
     found = tuple(cells)
     models = sorted({cell.model for cell in found})
     return tuple(_figures(model, [c for c in found if c.model == model]) for model in models)
 
 
-def _figures(model: str, cells: Sequence[PaperCell]) -> PaperFigures:
-    def mean(of: Callable[[PaperCell], float]) -> float:
+def _figures(model: str, cells: Sequence[PublishedCell]) -> PublishedFigures:
+    def mean(of: Callable[[PublishedCell], float]) -> float:
         return fsum(map(of, cells)) / len(cells)
 
     completion = mean(lambda cell: cell.completion)
-    return PaperFigures(
+    return PublishedFigures(
         model=model,
         n=sum(cell.n for cell in cells),
         completion=completion,
@@ -145,14 +145,14 @@ def _figures(model: str, cells: Sequence[PaperCell]) -> PaperFigures:
     )
 
 
-def _by_task(cells: Iterable[PaperCell]) -> list[float]:
+def _by_task(cells: Iterable[PublishedCell]) -> list[float]:
     tasks: dict[str, list[float]] = {}
     for cell in cells:
         tasks.setdefault(cell.task, []).append(cell.completion)
     return [fsum(means) / len(means) for means in tasks.values()]
 
 
-def _repeat(cells: Sequence[PaperCell], centre: float) -> Interval:
+def _repeat(cells: Sequence[PublishedCell], centre: float) -> Interval:
     """As `statistics.interval` makes it, from deviations in place of the values."""
     error = math.sqrt(fsum(c.deviation**2 / c.n for c in cells)) / len(cells)
     degrees = min(cell.n for cell in cells) - 1

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 from adamo_vh.analysis.cells import MeanRow, Setting, natural
 from adamo_vh.analysis.paper.printed import AVERAGES, BACKBONES
-from adamo_vh.analysis.paper.published import chosen, paper_figures
+from adamo_vh.analysis.paper.published import chosen, published_figures
 from adamo_vh.report.study.headline import paper_name
 from adamo_vh.report.study.material import Material, shown_labeling, shown_scene
-from adamo_vh.report.study.section import Section, paper_sure, sure
+from adamo_vh.report.study.section import Section, published_sure, sure
 from adamo_vh.report.study.table import Cell, Row, Table, heads, text
 
 _NOT_PRINTED = "the paper does not print it"
@@ -110,14 +110,14 @@ def _published(material: Material, what: str, labeling: str, scene: str) -> list
             (
                 text(what),
                 text(f"{paper_name(found.model)}, published"),
-                *paper_sure(found),
+                *published_sure(found),
                 Cell(found.seconds_per_call, "seconds"),
                 *_calls(found.walk, found.look, found.pick, found.drop, found.tool_calls),
                 Cell(found.n, "count"),
             ),
             is_paper=True,
         )
-        for found in paper_figures(cells)
+        for found in published_figures(cells)
     ]
 
 
@@ -182,12 +182,12 @@ def _families(material: Material) -> Table:
             )
             rows.append(Row((*head, *scores)))
         cells = chosen(scenes=material.scenes, labelings=material.labelings, tasks=tasks[family])
-        for model in paper_figures(cells):
+        for model in published_figures(cells):
             head = (text(family), text(paper_name(model.model)))
             known = (Cell(model.model_calls, "number"), Cell(model.tokens, "tokens"))
             blank = Cell(None, why="the paper has no strict score")
             counts = (blank, *known, Cell(model.n, "count"))
-            rows.append(Row((*head, *paper_sure(model), *counts), is_paper=True))
+            rows.append(Row((*head, *published_sure(model), *counts), is_paper=True))
     return Table(
         "families",
         "Averages by task family",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from adamo_vh.analysis.cells import Setting
 from adamo_vh.analysis.figures import KINDS, Figures
-from adamo_vh.analysis.paper.published import PaperFigures, chosen, paper_figures
+from adamo_vh.analysis.paper.published import PublishedFigures, chosen, published_figures
 from adamo_vh.report.study.chart import Axis, Chart, Mark, Panel, Series, shares
 from adamo_vh.report.study.headline import paper_name
 from adamo_vh.report.study.material import Material, shown_labeling
@@ -16,7 +16,9 @@ from adamo_vh.report.study.table import Cell, Form, Row, Table, text
 _NOT_TOLD = "the paper does not tell"
 _MOST_TICKS = 8
 
-Column = tuple[str, Form, Callable[[Figures], float | None], Callable[[PaperFigures], float] | None]
+Column = tuple[
+    str, Form, Callable[[Figures], float | None], Callable[[PublishedFigures], float] | None
+]
 """Name, form, ours and the paper's."""
 
 
@@ -68,7 +70,7 @@ def effort(material: Material) -> Section:
 
 
 def _calls(others: Iterable[str]) -> tuple[Column, ...]:
-    paper: dict[str, Callable[[PaperFigures], float]] = {
+    paper: dict[str, Callable[[PublishedFigures], float]] = {
         "Walk": lambda p: p.walk,
         "Look": lambda p: p.look,
         "Pick": lambda p: p.pick,
@@ -175,7 +177,7 @@ def _table(
         if setting is None:
             under = [labeling] if labeling else material.labelings
             cells = chosen(scenes=material.scenes, labelings=under, tasks=material.tasks)
-            rows += [_paper_row(shown, found, columns) for found in paper_figures(cells)]
+            rows += [_paper_row(shown, found, columns) for found in published_figures(cells)]
             continue
         where = {"labeling": labeling} if labeling else {}
         mean = material.mean(setting, **where)
@@ -189,7 +191,7 @@ def _table(
     return Table(name, title, caption, heads, tuple(rows), is_grouped=True)
 
 
-def _paper_row(shown: str, found: PaperFigures, columns: tuple[Column, ...]) -> Row:
+def _paper_row(shown: str, found: PublishedFigures, columns: tuple[Column, ...]) -> Row:
     return Row(
         (
             text(shown),

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from adamo_vh.analysis.paper.printed import MODELS
-from adamo_vh.analysis.paper.published import PaperFigures, chosen, paper_figures
+from adamo_vh.analysis.paper.published import PublishedFigures, chosen, published_figures
 from adamo_vh.report.study.chart import Chart, Line, shares
 from adamo_vh.report.study.material import Material
 from adamo_vh.report.study.section import (
     INTERVALS,
     Section,
     blanks,
-    paper_sure,
+    published_sure,
     sure,
 )
 from adamo_vh.report.study.table import Cell, Row, Table, heads, text
@@ -28,9 +28,9 @@ def headline(material: Material) -> Section:
     )
 
 
-def same_cells(material: Material) -> tuple[PaperFigures, ...]:
+def same_cells(material: Material) -> tuple[PublishedFigures, ...]:
     """The paper's models on the scenes, labelings and tasks that were played here."""
-    return paper_figures(
+    return published_figures(
         chosen(scenes=material.scenes, labelings=material.labelings, tasks=material.tasks)
     )
 
@@ -40,7 +40,7 @@ def paper_name(model: str) -> str:
     return f"{MODELS[model]} (paper)"
 
 
-def _table(material: Material, paper: tuple[PaperFigures, ...]) -> Table:
+def _table(material: Material, paper: tuple[PublishedFigures, ...]) -> Table:
     rows = []
     for setting in material.settings:
         row = material.mean(setting)
@@ -63,7 +63,7 @@ def _table(material: Material, paper: tuple[PaperFigures, ...]) -> Table:
             )
         )
     for model in paper:
-        cells = (text(paper_name(model.model)), text("vlm"), *paper_sure(model), *blanks(5))
+        cells = (text(paper_name(model.model)), text("vlm"), *published_sure(model), *blanks(5))
         tasks = len(set(material.tasks))
         counts = (Cell(tasks, "count"), Cell(model.n, "count"), *blanks(1))
         rows.append(Row((*cells, *counts), is_paper=True))
@@ -85,7 +85,7 @@ def _table(material: Material, paper: tuple[PaperFigures, ...]) -> Table:
     )
 
 
-def _chart(material: Material, paper: tuple[PaperFigures, ...]) -> Chart:
+def _chart(material: Material, paper: tuple[PublishedFigures, ...]) -> Chart:
     lines = []
     for setting in material.settings:
         row = material.mean(setting)

@@ -8,7 +8,7 @@ from math import fsum
 
 from adamo_vh.analysis.cells import Setting
 from adamo_vh.analysis.paper.printed import MODELS, SPEARMAN
-from adamo_vh.analysis.paper.published import PaperCell, chosen
+from adamo_vh.analysis.paper.published import PublishedCell, chosen
 from adamo_vh.analysis.ranks import ALL, Level, Over, RankRow, rank_of, ranks
 from adamo_vh.analysis.statistics import Rank
 from adamo_vh.benchmark import tasks as benchmark_tasks
@@ -114,7 +114,7 @@ def _paper_points(material: Material, labelings: Sequence[str], level: Level) ->
     return [(cell.task, _level(cell, level), cell.completion) for cell in cells]
 
 
-def _level(cell: PaperCell, level: Level) -> int:
+def _level(cell: PublishedCell, level: Level) -> int:
     found = benchmark_tasks.task(cell.task)
     return found.printed.total if level == "printed" else found.computed.total
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from adamo_vh.analysis.figures import Scored, Why
-from adamo_vh.analysis.paper.published import PaperFigures
+from adamo_vh.analysis.paper.published import PublishedFigures
 from adamo_vh.report.study.chart import Chart
 from adamo_vh.report.study.table import Cell, Table
 
@@ -53,7 +53,7 @@ def sure(score: Scored, why: Why, href: str = "") -> tuple[Cell, Cell, Cell]:
     )
 
 
-def paper_sure(found: PaperFigures) -> tuple[Cell, Cell, Cell]:
+def published_sure(found: PublishedFigures) -> tuple[Cell, Cell, Cell]:
     """The same of the paper's published cells."""
     return (
         Cell(found.completion, "share"),
