@@ -15,7 +15,16 @@ from adamo_vh.action import Drop, Inspect, Look, Pick, Survey, ToolSchema, Walk
 from adamo_vh.action_server import LEAN_TOOLS, PAPER_TOOLS
 from adamo_vh.benchmark.conditions import NEAR_M
 from adamo_vh.cognition.instructions import system_prompt
-from adamo_vh.cognition.profile import PAPER, PROFILES, SWITCHES, Profile, StateText, profile
+from adamo_vh.cognition.profile import (
+    PAPER,
+    PROFILES,
+    SWITCHES,
+    BufferUnit,
+    Profile,
+    StateText,
+    profile,
+    told_without,
+)
 from adamo_vh.cognition.turns import offered, read_turn
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.messages import (
@@ -49,6 +58,7 @@ EVERY_SWITCH: dict[str, tuple[Any, ...]] = {
     "min_confidence": (0.0,),
     "finish_check": (True, False),
     "plan": (1, 4),
+    "buffer_unit": tuple(BufferUnit),
     "exact_sampling": (True, False),
 }
 
@@ -65,6 +75,12 @@ def test_switches_are_read_and_named() -> None:
     assert str(profile("paper", {"pictures": 2})) == "paper (pictures=2)"
     assert str(profile("paper", {"pictures": "none"})) == "paper (pictures=none)"
     assert str(profile("paper", {"state": "none"})) == "paper (state=none)"
+
+
+def test_a_switch_that_is_told_elsewhere_is_left_out() -> None:
+    assert told_without("lean (state=last, plan=1)", {"plan"}) == "lean (state=last)"
+    assert told_without("lean (plan=1)", {"plan", "terse"}) == "lean"
+    assert told_without("paper", {"plan"}) == "paper"
 
 
 def test_without_pictures_there_are_no_close_ups_either() -> None:

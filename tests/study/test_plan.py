@@ -98,7 +98,7 @@ def test_parts_of_a_group_and_switches_can_be_set_and_varied() -> None:
 
 @pytest.mark.parametrize(
     ("name", "episodes"),
-    [("paper", 900), ("memory", 900), ("sampling", 675), ("points", 1125), ("resolution", 675)],
+    [("paper", 900), ("memory", 1800), ("sampling", 675), ("points", 1125), ("resolution", 675)],
 )
 def test_the_papers_studies_have_their_size(name: str, episodes: int) -> None:
     assert len(plan(read_study(name, {"models": ["random"]}))) == episodes

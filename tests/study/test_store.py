@@ -158,3 +158,15 @@ def test_the_plan_is_plain_json(tmp_path: Path) -> None:
     told = json.loads((tmp_path / STUDY).read_text())
     assert told["episodes"] == [one.key for one in EPISODES]
     assert told["study"]["models"] == ["random"]
+
+
+def test_a_switch_that_is_varied_is_told_by_its_axis_alone(tmp_path: Path) -> None:
+    study = Study(("T1",), models=("random",), settings={"switches": {"terse": "on"}},
+                  axes={"switches.buffer_unit": ("step", "block")})  # fmt: skip
+    episodes = plan(study)
+    outcomes = [record(tmp_path, one) for one in episodes]
+    assert [one.profile for one in outcomes] == ["paper (terse=on)"] * 2
+    assert [one.axes for one in outcomes] == [
+        {"switches.buffer_unit": "step"},
+        {"switches.buffer_unit": "block"},
+    ]

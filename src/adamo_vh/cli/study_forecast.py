@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
-from adamo_vh.cli.terminal import line, put_json, say
+from adamo_vh.cli.terminal import line, put_json, say, wide_console
 from adamo_vh.cognition.budget import Budget
 from adamo_vh.readable import readable
 from adamo_vh.study.outlook import Outlook, outlook
@@ -43,8 +42,8 @@ def forecast_and_show(study: Study, out: Path | None, means: Means, *, as_json: 
 
 def _print(ahead: Outlook, left: int) -> None:
     table = Table(
-        "model", "episodes", "calls", "tokens", "at most", "USD", "at most", "s/call", "hours",
-        box=SIMPLE_HEAD,
+        "model", "episodes", "calls", "tokens", "at 2x calls", "USD", "at 2x calls", "s/call",
+        "hours in a row", box=SIMPLE_HEAD,
     )  # fmt: skip
     for column in table.columns[1:]:
         column.justify = "right"
@@ -60,7 +59,10 @@ def _print(ahead: Outlook, left: int) -> None:
             f"{one.seconds_per_call:.2f}",
             f"{(one.model_s + one.world_s) / 3600:,.2f}",
         )
-    Console().print(table)
+    wide_console().print(table)
+    if any(one.is_remote for one in ahead.models):
+        line("assumed", "a call for each act of a task and one to end; a remote model's s/call is "
+             "the paper's mean")  # fmt: skip
     for place, seconds in ahead.action_s.items():
         line("measured", f"{seconds:.2f} s for an action with its view in {place}")
     line(

@@ -11,7 +11,7 @@ from rich.live import Live
 from rich.table import Table
 
 from adamo_vh.analysis.outcome import Outcome
-from adamo_vh.cli.terminal import line, put_json, say
+from adamo_vh.cli.terminal import line, put_json, say, wide_console
 from adamo_vh.readable import readable
 from adamo_vh.study.plan import Planned
 from adamo_vh.study.running import Played
@@ -35,7 +35,10 @@ def table_of(tally: Tally) -> Table:
     """How far every group of cells is, and the whole."""
     groups = grouped(tally)
     varied = [i for i in range(len(_HEAD)) if i < 3 or len({key[i] for key in groups}) > 1]
-    table = Table(*(_HEAD[i] for i in varied), caption=pace(tally), box=SIMPLE_HEAD, padding=(0, 1))
+    table = Table(caption=pace(tally), box=SIMPLE_HEAD, padding=(0, 1))
+    for i in varied:
+        # What tells two rows apart is never cut off.
+        table.add_column(_HEAD[i], overflow="fold")
     for name in _COUNTS:
         table.add_column(name, justify="right")
     for key, counts in groups.items():
@@ -198,8 +201,7 @@ def put_summary(played: Played, folder: Path, *, as_json: bool) -> None:
             }
         )
         return
-    console = Console()
-    console.print(table_of(played.tally))
+    wide_console().print(table_of(played.tally))
     for key, why in verdict.problems.items():
         line("unscored", f"{key}: {why}", "yellow")
     if verdict.budget_spent:

@@ -8,12 +8,11 @@ from pathlib import Path
 
 import typer
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
 from adamo_vh.analysis.study_json import study_json
 from adamo_vh.cli.exits import Exit
-from adamo_vh.cli.terminal import complain, line, put_json, say
+from adamo_vh.cli.terminal import complain, line, put_json, say, wide_console
 from adamo_vh.errors import ConfigError
 from adamo_vh.readable import readable
 from adamo_vh.report.page import write_page
@@ -115,7 +114,7 @@ def _print_headline(material: Material) -> None:
         cells = (found.completion.mean, found.strict.mean, found.completion.repeat)
         shown = (Cell(value, "share").text for value in (*cells, found.completion.task))
         table.add_row(readable(material.name(setting)), str(found.n), *shown)
-    Console().print(table)
+    wide_console().print(table)
 
 
 def study_names(folders: Sequence[Path]) -> tuple[str, ...]:

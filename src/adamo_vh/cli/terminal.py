@@ -19,6 +19,8 @@ from rich.text import Text
 
 from adamo_vh.readable import readable
 
+_WIDE = 150
+"""Letters of a line where there is no terminal that is narrower."""
 _LONGEST = 4000
 """Letters of a complaint; an error may quote what it is about."""
 
@@ -90,6 +92,14 @@ def say(text: object, style: str = "", *, console: Console | None = None) -> Non
     """Print a text: its lines stay, nothing in it is taken for a command or a style."""
     words = Text(readable(str(text), lines=True), style)
     (console or Console()).print(words, soft_wrap=True)
+
+
+def wide_console() -> Console:
+    """A console for tables: without a terminal nobody needs them narrow, and nothing is cut off."""
+    console = Console()
+    if console.is_terminal or "COLUMNS" in os.environ:
+        return console
+    return Console(width=max(console.width, _WIDE))
 
 
 def line(label: str, text: str, style: str = "", *, console: Console | None = None) -> None:

@@ -8,7 +8,7 @@ of different profiles are always reported apart.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from typing import Any, Literal
@@ -30,6 +30,16 @@ class StateText(StrEnum):
     """With each result only what changed; all that was said before stays where it was."""
     NONE = "none"
     """No state in words: the model has the pictures and what feedback says."""
+
+
+class BufferUnit(StrEnum):
+    """What the short-term memory counts: k is that many of these."""
+
+    STEP = "step"
+    """What the model said, with the results of its calls and the views that followed."""
+    BLOCK = "block"
+    """The original program's: what the model said with its results is one, and so is every other
+    message, that with a picture too."""
 
 
 NO_PICTURES: Literal["none"] = "none"
@@ -68,6 +78,7 @@ class Profile:
     """The episode is ended by a tool that asks what is verified and what was not looked at."""
     plan: int = 1
     """Calls that are executed in one turn, until the first surprise."""
+    buffer_unit: BufferUnit = BufferUnit.STEP
     exact_sampling: bool = False
     """Send temperature and top-p both, as the paper did, even where a provider refuses them."""
 
@@ -183,6 +194,18 @@ def profile(name: str, switches: Mapping[str, Any] | None = None) -> Profile:
     return replace(start, **values)
 
 
+def told_without(told: str, switches: Collection[str]) -> str:
+    """What a profile is called, as `str` tells it, without some of the switches that differ.
+
+    Args:
+        told: Such as "paper (plan=3, terse=on)".
+        switches: Names of those that are told elsewhere.
+    """
+    name, _, rest = told.partition(" (")
+    kept = [part for part in rest.rstrip(")").split(", ") if part.split("=")[0] not in switches]
+    return f"{name} ({', '.join(kept)})" if any(kept) else name
+
+
 def _read(switch: str, value: Any, usual: Any) -> Any:
     text = str(value).strip().lower()
     if switch == "pictures" and text in (NO_PICTURES, NEW_PICTURES):
@@ -195,8 +218,8 @@ def _read(switch: str, value: Any, usual: Any) -> Any:
         offer = "on or off" if isinstance(usual, bool) else "a number"
         if switch == "pictures":
             offer = "a number, new or none"
-        if isinstance(usual, StateText):
-            offer = ", ".join(StateText)
+        if isinstance(usual, StrEnum):
+            offer = ", ".join(type(usual))
         raise ConfigError(f"Switch {switch}: {value!r} is not understood; use {offer}.") from None
 
 

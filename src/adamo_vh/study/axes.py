@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -101,6 +101,17 @@ def _made(name: str, value: Any) -> Any:
             raise ConfigError(f"{name} is {value!r}: write a list of texts.")
         return tuple(texts)
     return value
+
+
+def switches_of(axes: Iterable[tuple[str, str]]) -> frozenset[str]:
+    """The switches of the profile that axes set, by their names and values as they are spelled."""
+    found = set()
+    for name, value in axes:
+        if name == _SWITCHES:
+            found |= {part.partition("=")[0] for part in value.split(",")}
+        elif name.startswith(f"{_SWITCHES}."):
+            found.add(name.partition(".")[2])
+    return frozenset(found)
 
 
 def spelled(value: Any) -> str:

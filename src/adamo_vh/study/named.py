@@ -10,7 +10,10 @@ _ABLATION: Mapping[str, Any] = {"scenes": ["s1"], "labelings": ["sem"], "repetit
 
 NAMED: Mapping[str, Mapping[str, Any]] = {
     "paper": {"scenes": ["s1", "s2"], "labelings": ["sem", "opaq"], "repetitions": 15},
-    "memory": {**_ABLATION, "axes": {"k": [4, 6, 10, 50]}},
+    "memory": {
+        **_ABLATION,
+        "axes": {"k": [4, 6, 10, 50], "switches.buffer_unit": ["step", "block"]},
+    },
     "sampling": {
         **_ABLATION,
         "axes": {

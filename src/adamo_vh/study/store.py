@@ -17,13 +17,14 @@ from typing import Any, Self
 from adamo_vh.analysis.diagnosis.finding import DIAGNOSIS, read_diagnosis
 from adamo_vh.analysis.outcome import Outcome, outcome_of
 from adamo_vh.benchmark.ways import way_m
+from adamo_vh.cognition.profile import told_without
 from adamo_vh.episode.result import read_manifest, read_result
 from adamo_vh.errors import AdamoError, ConfigError, FileError, RecordError
 from adamo_vh.files import read_json, write_whole
 from adamo_vh.record.run_folder import RESULT, FolderLock
 from adamo_vh.record.signing import Signer
 from adamo_vh.record.trajectory import read_trajectory
-from adamo_vh.study.axes import spelled
+from adamo_vh.study.axes import spelled, switches_of
 from adamo_vh.study.chain import Chain
 from adamo_vh.study.index import Index
 from adamo_vh.study.plan import Planned, Study, plan
@@ -76,8 +77,9 @@ def finished(folder: Path, planned: Planned) -> Outcome | None:
         diagnosis=_diagnosis(run),
     )
     # Called as in the plan: a model that draws lots has its seed in its own name, which would make
-    # a cell of every episode.
-    return replace(outcome, scene=cell.scene, task=cell.task, model=cell.model)
+    # a cell of every episode. What an axis varies is told by the axis alone.
+    profile = told_without(outcome.profile, switches_of(cell.axes))
+    return replace(outcome, scene=cell.scene, task=cell.task, model=cell.model, profile=profile)
 
 
 def lacks_diagnosis(folder: Path, outcome: Outcome) -> bool:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from adamo_vh.action import Outcome
 from adamo_vh.cognition.memory.protocol import Result
 from adamo_vh.cognition.memory.short_term import ShortTermMemory
-from adamo_vh.cognition.profile import PAPER, PROFILES, Profile, StateText
+from adamo_vh.cognition.profile import PAPER, PROFILES, BufferUnit, Profile, StateText
 from adamo_vh.errors import ConfigError
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.inference.messages import (
@@ -220,3 +220,15 @@ def test_words_in_between_are_no_steps() -> None:
     memory.add_step(*_flat(step(3, None)))
     texts = [m.text for m in memory.messages() if isinstance(m, HumanMessage)]
     assert texts == ["do it"]
+
+
+def test_a_block_is_a_reply_with_its_results_or_any_other_message() -> None:
+    blocks = replace(PAPER, buffer_unit=BufferUnit.BLOCK)
+    looks = [(1, True), (1, False), (2, True), (1, True)]
+    for k, notes in ((7, 4), (6, 3), (5, 3), (4, 2), (3, 1), (2, 1), (1, 1)):
+        _, prompt = filled(k, looks, blocks)
+        assert sum(isinstance(message, AIMessage) for message in prompt) == notes
+    # Where views come inside of results, they are no messages of their own.
+    within = replace(blocks, pictures_in_results=True)
+    _, prompt = filled(3, looks, within)
+    assert sum(isinstance(message, AIMessage) for message in prompt) == 3

@@ -3,8 +3,9 @@
 Paper, Sec. 3.1: (i) fixed instructions (system), (ii) the symbolic state, always the latest
 (system), (iii) a rolling buffer of human, AI and tool messages. Here `k` counts steps: an AI
 message, the answers to its calls, and the frame that followed, cut or kept together, so that no
-tool result ever loses its call. The first human message is never dropped, nor is the instruction
-that is being carried out.
+tool result ever loses its call. By a switch it counts blocks as the original program does, where a
+frame counts beside its step; a step that does not fit whole is left out. The first human message is
+never dropped, nor is the instruction that is being carried out.
 
 The memory keeps what happened as data; the prompt is a pure function of it and of the profile.
 """
@@ -19,6 +20,7 @@ from adamo_vh.cognition.profile import (
     NEW_PICTURES,
     NO_PICTURES,
     PAPER,
+    BufferUnit,
     Profile,
     StateText,
 )
@@ -70,7 +72,8 @@ class ShortTermMemory:
 
         Args:
             instructions: The fixed system prompt.
-            k: How many past steps to keep; at least 1.
+            k: How many past steps to keep, or blocks if the profile counts those; at least 1. The
+                last step is always kept.
             profile: Where state and pictures stand in the prompt; the paper's by default.
             form: Which fields the symbolic state has.
         """
@@ -103,12 +106,29 @@ class ShortTermMemory:
     def add_step(self, message: AIMessage, *results: Result) -> None:
         """Remember what the model said and what came back."""
         self._entries.append(Exchange(message, results))
-        steps = [i for i, entry in enumerate(self._entries) if isinstance(entry, Exchange)]
-        if len(steps) > self._k:
-            # With a step goes what was said before it, and the word that it was answered with.
-            del self._entries[: steps[-self._k]]
+        self._cut()
         for result in results:
             self._view, self._agent = result.view or self._view, result.agent
+
+    def _cut(self) -> None:
+        """Forget the oldest steps until no more than `k` are left."""
+        steps = [i for i, entry in enumerate(self._entries) if isinstance(entry, Exchange)]
+        kept = steps[-self._k :]
+        if self._profile.buffer_unit is BufferUnit.BLOCK:
+            while len(kept) > 1 and sum(map(self._blocks, self._entries[kept[0] :])) > self._k:
+                del kept[0]
+        if len(kept) < len(steps):
+            # With a step goes what was said before it, and the word that it was answered with.
+            del self._entries[: kept[0]]
+
+    def _blocks(self, entry: Instruction | Exchange) -> int:
+        """How many the original counts for an entry."""
+        if isinstance(entry, Instruction):
+            return 1
+        if not self._profile.has_pictures or self._profile.pictures_in_results:
+            return 1
+        shown = (len(result.pictures) + (result.view is not None) for result in entry.results)
+        return 1 + sum(shown)
 
     @property
     def state_text(self) -> str:

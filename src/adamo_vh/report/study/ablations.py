@@ -13,7 +13,9 @@ from adamo_vh.report.study.section import OTHER_TASKS, REPEAT, Section, sure
 from adamo_vh.report.study.table import Cell, Form, Row, Table, text
 
 _WHAT: dict[str, str] = {
-    "k": "how many steps the short-term memory holds",
+    "k": "how much the short-term memory holds: steps, or the original’s blocks",
+    "switches.buffer_unit": "what k counts: whole steps, or the original’s blocks, where a picture "
+    "counts beside its step",
     "sampling": "how freely the model draws its words",
     "grid": "how many reference points stand along each side of the picture",
     "resolution": "the size of the picture",
