@@ -27,6 +27,7 @@ from adamo_vh.service.app import serving
 from adamo_vh.service.hosting import Host, Terms
 from adamo_vh.session.builtin import figure_glb, read_scene
 from adamo_vh.session.posing import Posing
+from adamo_vh.studio.editing import Editor
 from adamo_vh.studio.face import Studio, studio_face
 from adamo_vh.studio.files import PAGE
 from adamo_vh.studio.library import Library
@@ -104,7 +105,7 @@ def served(measure: Callable[[str], None]) -> None:
         offer = Offer()
         out = Path(folder)
         rooms = Rooms(out, offer, RoomTerms(resolution="640x360"))
-        studio = Studio(offer, Library([out]), rooms, Meshes())
+        studio = Studio(offer, Library([out]), rooms, Meshes(), Editor(out / "scenes", offer))
         host = Host(out / "served", Terms())
         with serving(host, faces=(studio_face(studio),)) as url:
             measure(url)

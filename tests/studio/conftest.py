@@ -15,6 +15,7 @@ import pytest
 from adamo_vh.service.app import MAX_BODY_BYTES, serving
 from adamo_vh.service.hosting import Host, Terms
 from adamo_vh.serving.admission import Rules
+from adamo_vh.studio.editing import Editor
 from adamo_vh.studio.face import AT, Studio, studio_face
 from adamo_vh.studio.library import Library
 from adamo_vh.studio.meshes import Meshes
@@ -64,7 +65,8 @@ def made(folder: Path, terms: RoomTerms, runs: list[Path], models: list[str]) ->
     (page / "source.txt").write_text("0")
     (folder / "secret.js").write_text("no")
     library = Library([*runs, folder / "runs"])
-    return Studio(offer, library, Rooms(folder / "runs", offer, terms), Meshes(), page)
+    editor = Editor(folder / "runs" / "scenes", offer)
+    return Studio(offer, library, Rooms(folder / "runs", offer, terms), Meshes(), editor, page)
 
 
 @pytest.fixture(scope="session")

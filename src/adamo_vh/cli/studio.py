@@ -57,6 +57,7 @@ def studio(
         from adamo_vh.service.app import FACES, MAX_BODY_BYTES, serving
         from adamo_vh.studio.face import AT, Studio, studio_face
     from adamo_vh.service.hosting import Host, Terms
+    from adamo_vh.studio.editing import Editor
     from adamo_vh.studio.library import Library
     from adamo_vh.studio.meshes import Meshes
     from adamo_vh.studio.offer import Offer
@@ -70,7 +71,9 @@ def studio(
     parent = out or RUNS
     offer = Offer(models, scenes)
     rooms = Rooms(parent, offer, RoomTerms(most=most_rooms, resolution=resolution))
-    shown = Studio(offer, Library([*(runs or ()), parent]), rooms, Meshes())
+    shown = Studio(
+        offer, Library([*(runs or ()), parent]), rooms, Meshes(), Editor(parent / "scenes", offer)
+    )
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())

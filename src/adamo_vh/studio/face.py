@@ -21,6 +21,8 @@ from adamo_vh.service.app import Face
 from adamo_vh.service.hosting import NoSessionError
 from adamo_vh.serving.admission import COOKIE
 from adamo_vh.session.builtin import figure_names
+from adamo_vh.session.editing import catalog
+from adamo_vh.studio.editing import Draft, Editor
 from adamo_vh.studio.files import PAGE, SAFE, page_file
 from adamo_vh.studio.library import Library, scene_of
 from adamo_vh.studio.live import Connection
@@ -45,6 +47,7 @@ class Studio:
     library: Library
     rooms: Rooms
     meshes: Meshes
+    editor: Editor
     page: Path = PAGE
     """The built page."""
 
@@ -64,7 +67,13 @@ def studio_face(studio: Studio) -> Face:
     """The face at which the page is served."""
 
     def add(app: FastAPI, _: Host) -> AbstractAsyncContextManager[None]:
-        for router in (_page(studio), _choices(studio), _rooms(studio), _runs(studio)):
+        for router in (
+            _page(studio),
+            _choices(studio),
+            _drafts(studio),
+            _rooms(studio),
+            _runs(studio),
+        ):
             app.include_router(router)
 
         @asynccontextmanager
@@ -141,9 +150,36 @@ def _choices(studio: Studio) -> APIRouter:
         packed = await asyncio.to_thread(studio.meshes.scene, file, variation, version)
         return _packed(request, packed, "model/gltf-binary")
 
+    @router.get("/scenes/{scene}")
+    async def shown(scene: str) -> dict[str, Any]:
+        return await asyncio.to_thread(studio.editor.show, scene)
+
     @router.get("/figures/{figure}.glb")
     async def figure(request: Request, figure: str) -> Response:
         packed = await asyncio.to_thread(studio.meshes.figure, figure)
+        return _packed(request, packed, "model/gltf-binary")
+
+    return router
+
+
+def _drafts(studio: Studio) -> APIRouter:
+    router = APIRouter(prefix=f"{AT}/api", include_in_schema=False)
+
+    @router.post("/scenes/check")
+    async def check(draft: Draft) -> dict[str, Any]:
+        return await asyncio.to_thread(studio.editor.check, draft)
+
+    @router.post("/scenes", status_code=201)
+    async def save(draft: Draft) -> dict[str, Any]:
+        return await asyncio.to_thread(studio.editor.save, draft)
+
+    @router.get("/catalog")
+    async def everything() -> dict[str, Any]:
+        return await asyncio.to_thread(catalog)
+
+    @router.get("/assets/{asset}.glb")
+    async def asset(request: Request, asset: str) -> Response:
+        packed = await asyncio.to_thread(studio.meshes.asset, asset)
         return _packed(request, packed, "model/gltf-binary")
 
     return router

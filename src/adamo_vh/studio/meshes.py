@@ -10,8 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from adamo_vh.session.builtin import figure_glb, scene_glb
+from adamo_vh.session.editing import asset_mesh
 
-_MOST = 12
+_MOST = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +59,14 @@ class Meshes:
             ConfigError: No figure has this name.
         """
         return self._once(("figure", who), lambda: figure_glb(who))
+
+    def asset(self, name: str) -> Packed:
+        """A piece of furniture or an object by itself.
+
+        Raises:
+            ConfigError: The catalog has none of this name.
+        """
+        return self._once(("asset", name), lambda: asset_mesh(name))
 
     def _once(self, key: tuple[str, ...], make: Callable[[], bytes]) -> Packed:
         with self._lock:

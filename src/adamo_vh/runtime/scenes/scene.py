@@ -7,11 +7,11 @@ from the catalog and never paths.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
@@ -177,9 +177,21 @@ def parse_scene(text: str, source: str) -> Scene:
         SceneError: Names the source, the field and the fix; its `faults` are all that is wrong.
     """
     try:
-        data = parse_toml(text, source)
+        return scene_from(parse_toml(text, source), source)
     except FileError as error:
         raise SceneError(str(error)) from None
+
+
+def scene_from(data: Mapping[str, Any], source: str) -> Scene:
+    """Validate the data of a scene file.
+
+    Args:
+        data: As its text says.
+        source: File name for error messages.
+
+    Raises:
+        SceneError: Names the source, the field and the fix; its `faults` are all that is wrong.
+    """
     try:
         scene = TypeAdapter(Scene).validate_python(data)
     except ValidationError as error:
