@@ -29,6 +29,8 @@ export interface SceneShape {
   y_min: number;
   y_max: number;
   height_m: number;
+  /** Address of the mesh; empty if there is none to be had. */
+  glb: string;
   objects: SceneObject[];
   furniture: Furniture[];
 }
@@ -51,6 +53,7 @@ export interface Hello {
   settings: Record<string, unknown>;
   scene: SceneShape;
   body: BodyShape;
+  figure: { name: string; glb: string };
   joints: string[];
   rate: number;
   live: boolean;

@@ -5,17 +5,15 @@ import { fields, list, number, readMessage, text } from "./reading.ts";
 import { Track } from "./track/track.ts";
 
 const AGAIN_MS = [500, 1000, 2000, 4000, 8000];
+/** Close code for a room that there is not. */
+const GONE = 4404;
 const PING_MS = 20_000;
 
 const address = (path: string): URL => new URL(`api/${path}`, document.baseURI);
 const part = encodeURIComponent;
 
-export const sceneAddress = (scene: string, variation: number): string =>
-  address(`scenes/${part(scene)}.glb?variation=${variation}`).href;
-export const figureAddress = (figure: string): string => address(`figures/${part(figure)}.glb`).href;
-
-/** A picture's address, if it is one of this server; empty otherwise. */
-export function frameAddress(frame: string): string {
+/** The address of a picture or a mesh, if it is one of this server; empty otherwise. */
+export function ownAddress(frame: string): string {
   if (!frame) return "";
   try {
     const url = new URL(frame, document.baseURI);
@@ -142,7 +140,7 @@ export class Live {
     socket.onmessage = ({ data }) => this.take(data);
     socket.onclose = ({ code }) => {
       this.listener.connected(false);
-      const isOver = code === 1000 || code === 1008;
+      const isOver = code === 1000 || code === 1008 || code === GONE;
       if (this.isClosed || isOver) return;
       const wait = AGAIN_MS[Math.min(this.tries++, AGAIN_MS.length - 1)];
       setTimeout(() => this.open(), wait);

@@ -1,7 +1,7 @@
 // What she sees: the picture from her eyes, and the object in it that the pointer is on.
 
 import { el, fill, write } from "../dom.ts";
-import { frameAddress } from "../server.ts";
+import { ownAddress } from "../server.ts";
 import type { Show } from "../show.ts";
 import type { Seen } from "./conversation.ts";
 import { spoken } from "./words.ts";
@@ -71,7 +71,7 @@ export function buildFrame(show: Show): FrameView {
     image.hidden = seen === null;
     if (!seen) return;
     picture.style.aspectRatio = `${seen.view.width_px} / ${seen.view.height_px}`;
-    const url = frameAddress(seen.frame);
+    const url = ownAddress(seen.frame);
     if (url && image.src !== url) image.src = url;
     image.alt = `The view from her eyes with ${seen.view.objects.length} objects`;
     write(step, `${seen.view.objects.length} objects in view`);

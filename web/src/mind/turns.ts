@@ -1,7 +1,7 @@
 // The story of a track: what was said, and every turn with its note, its calls and the feedback on them.
 
 import { el, fill } from "../dom.ts";
-import { frameAddress } from "../server.ts";
+import { ownAddress } from "../server.ts";
 import type { Show } from "../show.ts";
 import type { Deed, Item, SaidItem, TurnItem } from "./conversation.ts";
 import { tagButton } from "./frame.ts";
@@ -65,9 +65,11 @@ function turnView(show: Show, turn: TurnItem, number: number): HTMLElement {
     }
   }
   if (turn.unreadable) view.append(el("p", { class: "note" }, `Not readable: ${turn.unreadable}`));
+  // What she only says is shown as what she says.
+  view.hidden = !turn.note && !turn.unreadable && !turn.deeds.length;
   for (const deed of turn.deeds) view.append(deedView(show, deed));
   for (const frame of turn.closeUps) {
-    const url = frameAddress(frame);
+    const url = ownAddress(frame);
     if (url) view.append(el("img", { class: "close-up", attr: { src: url, alt: "What she looked at closely", loading: "lazy" } }));
   }
   return view;

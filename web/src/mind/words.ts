@@ -7,6 +7,12 @@ import { number, text } from "../reading.ts";
 export const spoken = (tag: string): string =>
   tag.replace(/([a-z])([A-Z])/g, "$1 $2").replaceAll("_", " ");
 
+/** Text with the tags of objects as people say them. */
+export function readAloud(text: string, tags: readonly string[]): string {
+  const known = new Set(tags);
+  return text.replace(/[A-Za-z]+_\d+/g, (part) => (known.has(part) ? spoken(part) : part));
+}
+
 const metres = (value: number): string => {
   const short = value.toFixed(2);
   return short === "-0.00" ? "0.00" : short;
@@ -23,7 +29,7 @@ export function whereIs([x, y, z]: readonly number[], scene: SceneShape): string
   const at = [x ?? 0, y ?? 0, z ?? 0] as const;
   const found = scene.furniture
     .filter(({ center, size }) =>
-      [0, 1].every((axis) => Math.abs((at[axis] ?? 0) - (center[axis] ?? 0)) <= (size[axis] ?? 0) / 2 + 0.02),
+      [0, 1].every((axis) => Math.abs((at[axis] ?? 0) - (center[axis] ?? 0)) <= (size[axis] ?? 0) / 2 + 0.06),
     )
     .filter(({ center, size }) => at[2] <= center[2] + size[2] / 2 + 0.4 && at[2] > 0.12 && size[2] > 0.1)
     .sort((a, b) => a.size[0] * a.size[1] - b.size[0] * b.size[1]);

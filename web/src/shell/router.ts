@@ -4,13 +4,14 @@ import { el } from "../dom.ts";
 import type { Hello } from "../protocol.ts";
 import { getTrack, Live } from "../server.ts";
 import { Show } from "../show.ts";
-import { watch, type Watching } from "../view/watching.ts";
+import { compare } from "../view/comparing.ts";
+import { watch } from "../view/watching.ts";
 import type { Shell } from "./shell.ts";
 import { openRuns } from "./runs.ts";
 import { openStart } from "./start.ts";
 
 export class Router {
-  private open: Watching[] = [];
+  private open: { close: () => void }[] = [];
   private turn = 0;
 
   constructor(private readonly shell: Shell) {
@@ -31,9 +32,11 @@ export class Router {
     document.querySelectorAll("dialog[open]").forEach((dialog) => (dialog as HTMLDialogElement).close());
     const room = asked.get("room");
     const run = asked.get("run");
+    const pair = (asked.get("compare") ?? "").split(",").filter(Boolean).map(decodeURIComponent);
     try {
       if (room) this.goLive(room, turn);
       else if (run) await this.goReplay(run, turn);
+      else if (pair.length === 2) await this.goCompare(pair, turn);
       else {
         this.wait("");
         await openStart();
@@ -72,6 +75,13 @@ export class Router {
         else if (!on && turn === this.turn) this.wait("This room cannot be reached. It may have been closed.");
       },
     });
+  }
+
+  private async goCompare(runs: readonly string[], turn: number): Promise<void> {
+    this.wait("Preparing the replays");
+    const [first, second] = await Promise.all(runs.map((run) => getTrack(run, () => undefined)));
+    if (turn !== this.turn || !first || !second) return;
+    this.open.push(compare(this.shell, [new Show(first), new Show(second)]));
   }
 
   private async goReplay(run: string, turn: number): Promise<void> {

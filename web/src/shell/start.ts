@@ -25,6 +25,9 @@ export function tellProblem(line: HTMLElement, error: unknown): void {
   line.hidden = false;
 }
 
+/** Stands for any model of a provider, whose name is asked for. */
+const ANY = "NAME";
+
 interface Choice {
   value: string;
   words: string;
@@ -85,16 +88,23 @@ export async function openStart(): Promise<void> {
 function form(offer: Offer, problem: HTMLElement): HTMLElement {
   const scenes = offer.scenes.map(({ name, title }) => ({ value: name, words: title }));
   const [sceneField, scene] = choose("Room", "start-scene", scenes);
-  const [figureField, figure] = choose("Person", "start-figure", plain(offer.figures));
+  const [figureField, figure] = choose("Person", "start-figure", offer.figures.map((value) => ({ value, words: value.charAt(0).toUpperCase() + value.slice(1) })));
   const [modelField, model] = choose("Mind", "start-model", models(offer), true);
   const [taskField, task] = choose("Task", "start-task", tasks(offer, scene.value), true);
   const [profileField, profile] = choose("Spoken to", "start-profile", plain(offer.profiles));
   const labelings = offer.labelings.map((value) => ({ value, words: LABELINGS[value] ?? value }));
   const [labelingField, labeling] = choose("Tags", "start-labeling", labelings);
+  const name = el("input", { type: "text", id: "start-name", attr: { placeholder: "as its provider calls it", maxlength: "100" } });
+  const nameField = el("div", { class: "field wide" }, el("label", { for: "start-name" }, "Name of the model"), name);
+  const askName = (): void => {
+    nameField.hidden = !model.value.endsWith(ANY);
+  };
+  model.addEventListener("change", askName);
+  askName();
   const approve = el("input", { type: "checkbox", id: "start-approve" });
   const tick = el("div", { class: "tick" }, approve, el("label", { for: "start-approve" }, "Ask me before every action"));
   const start = el("button", { class: "button main", type: "submit" }, "Open the room");
-  const grid = el("div", { class: "grid" }, sceneField, figureField, modelField, taskField, profileField, labelingField);
+  const grid = el("div", { class: "grid" }, sceneField, figureField, modelField, nameField, taskField, profileField, labelingField);
   const made = el("form", { class: "sheet-form" }, grid, tick, el("footer", {}, start));
   scene.addEventListener("change", () => setChoices(task, tasks(offer, scene.value)));
   made.addEventListener("submit", (event) => {
@@ -103,7 +113,7 @@ function form(offer: Offer, problem: HTMLElement): HTMLElement {
     problem.hidden = true;
     const wish = {
       scene: scene.value,
-      model: model.value,
+      model: model.value.endsWith(ANY) ? model.value.slice(0, -ANY.length) + name.value.trim() : model.value,
       profile: profile.value,
       labeling: labeling.value,
       figure: figure.value,

@@ -3,6 +3,7 @@
 import { el, icon, ICONS, write } from "../dom.ts";
 import { spentWords } from "../mind/words.ts";
 import type { Doing } from "../protocol.ts";
+import { approvalTick } from "../take/approve.ts";
 import type { Show } from "../show.ts";
 
 const DOING: Record<Doing, string> = {
@@ -29,7 +30,8 @@ export function buildDesk(show: Show, timeline: HTMLElement): Desk {
   const state = el("div", { class: "state" }, dot, doing, spent);
   const talk = show.hello.live ? talkRow(show) : null;
   timeline.classList.add("room-part");
-  const root = el("section", { class: "desk card", attr: { "aria-label": "Talk and time" } }, state, talk?.form, timeline);
+  const tick = show.may("approval") && !show.may("act") ? approvalTick(show) : null;
+  const root = el("section", { class: "desk card", attr: { "aria-label": "Talk and time" } }, state, talk?.form, tick, timeline);
 
   const update = (): void => {
     const now = show.doing;

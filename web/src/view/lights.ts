@@ -23,7 +23,7 @@ import type { SceneShape } from "../protocol.ts";
 const WARM = 0xfff0dc;
 const SKY = 0xf3f6ff;
 
-const SKY_SHARE = 1;
+const SKY_SHARE = 1.55;
 
 export interface Lights {
   group: Group;

@@ -7,9 +7,9 @@ import {
   DataTexture,
   DoubleSide,
   Group,
+  LinearFilter,
   Mesh,
   MeshBasicMaterial,
-  NearestFilter,
   type Object3D,
   PlaneGeometry,
   RingGeometry,
@@ -63,7 +63,7 @@ export class Marks {
     const picture = new Uint8Array(nx * ny * 4);
     for (let i = 0; i < nx * ny; i++) picture.set([...WALK, free[i] ? 120 : 0], i * 4);
     const map = new DataTexture(picture, nx, ny);
-    map.magFilter = NearestFilter;
+    map.magFilter = LinearFilter;
     map.needsUpdate = true;
     const { x_min, x_max, y_min, y_max } = this.scene;
     const plane = new Mesh(

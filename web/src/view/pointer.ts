@@ -9,7 +9,7 @@ export interface PointerUser {
   /** Returns true to have the movement for itself, e.g. to drag a thing. */
   down: (event: PointerEvent) => boolean;
   move: (event: PointerEvent) => void;
-  up: (event: PointerEvent) => void;
+  up: () => void;
   click: (event: PointerEvent) => void;
   hover: (event: PointerEvent) => void;
   /** The free camera was moved by hand. */
@@ -57,8 +57,8 @@ export function steer(canvas: HTMLCanvasElement, cameras: Cameras, user: Pointer
   };
   const end = (event: PointerEvent): void => {
     held.delete(event.pointerId);
-    if (taken) user.up(event);
-    else if (!moved && event.type === "pointerup" && event.button === 0) user.click(event);
+    if (taken) user.up();
+    if (!moved && event.type === "pointerup" && event.button === 0) user.click(event);
     taken = false;
   };
   canvas.addEventListener("pointerup", end);

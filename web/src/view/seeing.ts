@@ -3,10 +3,9 @@
 import { Vector3 } from "three";
 import { el, icon, ICONS, write } from "../dom.ts";
 import { isQuestion } from "../mind/conversation.ts";
-import { spoken } from "../mind/words.ts";
-import { figureAddress, sceneAddress } from "../server.ts";
+import { readAloud, spoken } from "../mind/words.ts";
+import { ownAddress } from "../server.ts";
 import type { Show } from "../show.ts";
-import { number, text } from "../reading.ts";
 import type { CameraKind } from "./cameras.ts";
 import { Marks } from "./marks.ts";
 import { type Label, Overlay } from "./overlay.ts";
@@ -34,8 +33,9 @@ const SPOKEN_S = 9;
 export interface Hands {
   grab: (hit: Hit) => boolean;
   drag: (event: PointerEvent) => void;
-  release: (event: PointerEvent) => void;
+  release: () => void;
   click: (hit: Hit) => void;
+  /** Whether a click does something. */
   aims: () => boolean;
 }
 
@@ -49,6 +49,7 @@ export class Seeing {
   marks: Marks | null = null;
   hands: Hands | null = null;
   private readonly layers = new Set<Layer>();
+  private readonly layerPicks: [Layer, HTMLButtonElement][] = [];
   private readonly cameraButtons = new Map<CameraKind, HTMLButtonElement>();
   private readonly loading: HTMLElement;
   private readonly progress = el("progress", { attr: { max: "1", value: "0", "aria-label": "Loading the room" } });
@@ -80,11 +81,12 @@ export class Seeing {
 
   async open(): Promise<void> {
     const { hello } = this.show;
-    const variation = number(hello.settings.variation);
-    const urls = {
-      scene: sceneAddress(text(hello.settings.scene) || hello.scene.name, variation),
-      figure: figureAddress(text(hello.settings.figure) || "mara"),
-    };
+    const urls = { scene: ownAddress(hello.scene.glb), figure: ownAddress(hello.figure.glb) };
+    if (!urls.scene || !urls.figure) {
+      this.failed("This run cannot be shown in 3D. What she saw, thought and did is beside.");
+      this.runAlone();
+      return;
+    }
     const stage = await Stage.open(this.canvas, hello, urls, (s) => this.tick(s), (share) => {
       this.progress.value = share;
     });
@@ -98,7 +100,7 @@ export class Seeing {
     steer(this.canvas, stage.cameras, {
       down: (event) => this.grab(event),
       move: (event) => this.hands?.drag(event),
-      up: (event) => this.hands?.release(event),
+      up: () => this.hands?.release(),
       click: (event) => this.clicked(event),
       hover: (event) => this.hover(event),
       steered: () => this.pressCamera(),
@@ -106,6 +108,19 @@ export class Seeing {
     new ResizeObserver(() => stage.resize()).observe(this.root);
     stage.resize();
     stage.start();
+  }
+
+  /** Without a picture the clock goes on all the same. */
+  private runAlone(): void {
+    let last = performance.now();
+    const loop = (now: number): void => {
+      if (!this.root.isConnected) return;
+      this.show.player.advance((now - last) / 1000);
+      last = now;
+      this.everyFrame();
+      requestAnimationFrame(loop);
+    };
+    requestAnimationFrame(loop);
   }
 
   private tick(seconds: number): boolean {
@@ -140,7 +155,8 @@ export class Seeing {
     const last = story.items.findLast((item) => item.t <= player.time + 0.01 && item.kind !== "turn" && item.kind !== "note");
     if (!last || last.kind === "turn" || last.kind === "said") return "";
     const isLast = last === story.items.at(-1);
-    return isLast || player.time - last.t < SPOKEN_S ? last.text : "";
+    const tags = this.show.hello.scene.objects.map((object) => object.tag);
+    return isLast || player.time - last.t < SPOKEN_S ? readAloud(last.text, tags) : "";
   }
 
   statsLine(): string {
@@ -223,6 +239,13 @@ export class Seeing {
     for (const [kind, button] of this.cameraButtons) button.setAttribute("aria-pressed", String(kind === now));
   }
 
+  /** The same switches once more for narrow screens, where they have no room over the picture. */
+  roomLayers(): HTMLElement {
+    const bar = this.layerButtons();
+    bar.classList.add("room-part", "narrow");
+    return bar;
+  }
+
   private layerButtons(): HTMLElement {
     const bar = el("div", { class: "pick layers", role: "group", attr: { "aria-label": "Show in the room" } });
     for (const [layer, words] of LAYERS) {
@@ -231,12 +254,17 @@ export class Seeing {
         const on = !this.layers.has(layer);
         if (on) this.layers.add(layer);
         else this.layers.delete(layer);
-        button.setAttribute("aria-pressed", String(on));
+        this.pressLayer(layer, on);
         this.showLayer(layer, on);
       });
+      this.layerPicks.push([layer, button]);
       bar.append(button);
     }
     return bar;
+  }
+
+  private pressLayer(layer: Layer, on: boolean): void {
+    for (const [own, button] of this.layerPicks) if (own === layer) button.setAttribute("aria-pressed", String(on));
   }
 
   private showLayer(layer: Layer, on: boolean): void {

@@ -1,6 +1,6 @@
 // Draws the room: one renderer, one loop, a picture only when something changed.
 
-import { ACESFilmicToneMapping, Color, PCFShadowMap, Scene, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
+import { ACESFilmicToneMapping, BasicShadowMap, Color, PCFShadowMap, Scene, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
 import type { Hello } from "../protocol.ts";
 import type { Moment } from "../track/track.ts";
 import { Cameras } from "./cameras.ts";
@@ -80,7 +80,8 @@ export class Stage {
     renderer.toneMapping = ACESFilmicToneMapping;
     renderer.toneMappingExposure = 1.05;
     renderer.shadowMap.enabled = true;
-    renderer.shadowMap.type = PCFShadowMap;
+    // Soft edges cost a processor more than all the rest.
+    renderer.shadowMap.type = isPlain ? BasicShadowMap : PCFShadowMap;
     renderer.info.autoReset = false;
     const room = await Room.load(urls.scene, hello.scene, isPlain, progress);
     const figure = await Figure.load(urls.figure, hello.joints, room.ambience, isPlain);

@@ -1,5 +1,6 @@
 // Puts room, desk and mind of one track on the page.
 
+import type { FrameView } from "../mind/frame.ts";
 import { buildMind } from "../mind/panel.ts";
 import { type Shell, setBadge, tabs } from "../shell/shell.ts";
 import { buildTimeline } from "../shell/timeline.ts";
@@ -7,6 +8,9 @@ import type { Show } from "../show.ts";
 import { buildDesk } from "../talk/desk.ts";
 import { text } from "../reading.ts";
 import { el, write } from "../dom.ts";
+import { buildApproval } from "../take/approve.ts";
+import { Drag } from "../take/drag.ts";
+import { Human } from "../take/human.ts";
 import { Seeing } from "./seeing.ts";
 import { listenToKeys } from "../shell/keys.ts";
 
@@ -25,7 +29,10 @@ export function watch(shell: Shell, show: Show): Watching {
     mind.update();
     if (!show.player.following) desk.update();
   });
+  const taking = takePart(show, seeing, mind.frame);
   const left = el("div", { class: "left" }, seeing.root, desk.root);
+  desk.root.prepend(...taking);
+  desk.root.append(seeing.roomLayers());
   shell.work.className = "work";
   shell.work.replaceChildren(left, tabs(shell.work), mind.root);
   write(shell.where, whereWords(show));
@@ -58,6 +65,22 @@ export function watch(shell: Shell, show: Show): Watching {
       seeing.stage?.close();
     },
   };
+}
+
+/** What a person may do in a live room beyond talking. */
+function takePart(show: Show, seeing: Seeing, frame: FrameView): HTMLElement[] {
+  const drag = new Drag(show, seeing);
+  const human = show.may("act") ? new Human(show) : null;
+  human?.listenTo(frame);
+  seeing.hands = {
+    grab: (hit) => !human?.isTurn && drag.grab(hit),
+    drag: (event) => drag.drag(event),
+    release: () => drag.release(),
+    click: (hit) => human?.click(hit),
+    aims: () => human?.isTurn ?? false,
+  };
+  const asks = show.may("approval") && !human;
+  return [...(asks ? [buildApproval(show)] : []), ...(human ? [human.root] : [])];
 }
 
 function whereWords({ hello }: Show): string {
