@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import math
 
+import cv2
+import numpy as np
 import pytest
 
 from adamo_vh.geometry import Camera, Vec3
-from adamo_vh.inference.baseline.prompt.reading import Listed, Room
+from adamo_vh.inference.baseline.language.requests import understand
+from adamo_vh.inference.baseline.mind.beliefs import look
+from adamo_vh.inference.baseline.mind.choosing import thing_of
+from adamo_vh.inference.baseline.mind.memory import Memory
+from adamo_vh.inference.baseline.prompt.reading import Body, Listed, Prompt, Room
 from adamo_vh.inference.baseline.sight.kinds import class_of, classify, likeliest
 from adamo_vh.inference.baseline.sight.measures import Sight
 from adamo_vh.inference.baseline.sight.outlines import misfits
 from adamo_vh.inference.baseline.sight.prototypes import prototypes
 from adamo_vh.inference.baseline.sight.standing import heights
+from adamo_vh.inference.messages import ImagePart
 
 ROOM = Room()
 CAMERA = Camera(Vec3(-1.92, -1.0, 1.6), 0.0, math.atan2(-0.8, 1.92), math.radians(74), 1280, 720)
@@ -102,3 +109,32 @@ def test_a_thing_half_hidden_is_as_large_as_its_centre_tells():
 )  # fmt: skip
 def test_the_last_word_of_a_tag_names_its_kind(tag, kind):
     assert class_of(tag) == kind
+
+
+def test_what_is_of_a_vivid_colour_all_over_is_no_glass():
+    fits = {name: 0.1 if name in ("Glass", "PeanutButter", "Cup") else 3.0 for name in prototypes()}
+    lid = Sight(4200, {"red": 0.85, "brown": 0.15}, clear=0.33, misfits=fits)
+    pale = Sight(4200, {"grey": 0.4, "white": 0.4, "orange": 0.2}, clear=0.15, misfits=fits)
+    assert classify("7", 1600.0, lid)["Glass"] < 0.3
+    assert classify("7", 1400.0, pale)["Glass"] > 0.5
+
+
+@pytest.mark.parametrize(("away_m", "is_kept"), [(0.4, True), (1.2, False)])
+def test_a_nearer_view_counts_more_unless_it_shows_the_lid_alone(away_m, is_kept):
+    at, eyes_m = Vec3(0.0, 0.0, 0.5), 1.6
+    body = Body(Vec3(-away_m, 0.0, 0.0), 0.0, at, "empty")
+    camera = Camera(
+        Vec3(0.08 - away_m, 0.0, eyes_m), 0.0, math.atan2(at.z - eyes_m, away_m - 0.08),
+        math.radians(74), 1280, 720,
+    )  # fmt: skip
+    u, v, _ = (round(float(value)) for value in camera.project(at.array()[None])[0])
+    thing = Listed("8", at, 1782.0, (u - 30, v - 30, u + 30, v + 30))
+    frame = np.full((720, 1280, 3), (70, 105, 140), np.uint8)
+    cv2.circle(frame, (u, v), 29, (30, 30, 200), -1)
+    data = cv2.imencode(".png", frame)[1].tobytes()
+    prompt = Prompt("", ROOM, (thing,), (), body, ImagePart(data, "image/png", 1280, 720))
+    plan = understand("Pick all objects that have a printed product label")
+    memory = Memory(things={"8": thing_of("8", at, 1782.0)}, fits={("goal", 0): {"8": 0.9}})
+    memory.seen_m["8"] = 2.4
+    look(prompt, plan, memory, None)
+    assert (memory.fits["goal", 0]["8"] == 0.9) is is_kept

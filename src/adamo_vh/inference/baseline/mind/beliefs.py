@@ -21,6 +21,7 @@ from adamo_vh.inference.baseline.sight.kinds import (
 )
 from adamo_vh.inference.baseline.sight.looking import boxed, sights
 from adamo_vh.inference.baseline.sight.measures import Sight, colour_words
+from adamo_vh.inference.baseline.sight.outlines import EYES_M
 from adamo_vh.inference.baseline.sight.printed import WordReader
 from adamo_vh.inference.baseline.sight.prototypes import prototypes
 
@@ -32,6 +33,8 @@ OF_CONDITION = 99
 _LIKE_WOOD = ("orange", "brown", "yellow")
 _PERHAPS, _SURELY = 0.15, 0.6
 """Fits in between leave in doubt whether a thing is meant."""
+_STEEP = 1.5
+"""Height of the eyes above a thing over its distance, from which on they look down on it."""
 _CLOSER = 0.9
 """A view from less than this share of the former distance replaces what was believed."""
 
@@ -298,7 +301,14 @@ def _see(prompt: Prompt, plan: Plan, memory: Memory, looked_at: Mapping[str, Sig
                 continue
             fit = _fit(description, thing, sight, everything, beliefs[tag], memory.began)
             # The nearest view is believed; of equally near ones, the most favourable.
-            fits[tag] = fit if nearer else max(fit, fits.get(tag, 0.0))
+            believed = nearer and not _from_above(thing, prompt)
+            fits[tag] = fit if believed else max(fit, fits.get(tag, 0.0))
+
+
+def _from_above(thing: Thing, prompt: Prompt) -> bool:
+    """Whether the eyes look down on a thing so steeply that they see its lid and no side."""
+    below = EYES_M - thing.position.z
+    return below > _STEEP * prompt.body.position.horizontal_distance(thing.position)
 
 
 def _see_closely(

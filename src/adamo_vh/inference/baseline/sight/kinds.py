@@ -143,7 +143,7 @@ def _colour_misfit(sight: Sight) -> Floats:
         max(0.0, sight.share(name) - (_SHADING if name in ("grey", "black") else 0.0))
         for name in COLOURS
     ]
-    glassy = (1 - sight.clear) * (0.6 + 3.0 * vivid)
+    glassy = (1 - sight.clear) * (0.6 + 5.0 * vivid)
     usual = _usual()
     odd = usual.odd @ np.array(telling)
     return np.where(usual.transparent, glassy, 3.0 * odd + 1.5 * sight.clear)

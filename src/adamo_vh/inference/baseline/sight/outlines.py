@@ -137,7 +137,7 @@ def _outline(prototype: Prototype, angle: float) -> Floats:
     return np.concatenate([np.hstack([flat, level]) for level in levels])
 
 
-_EYES_M = 1.6
+EYES_M = 1.6
 """Height of a grown person's eyes."""
 _EYES_AHEAD_M = 0.08
 """How far they are in front of the body's axis."""
@@ -159,7 +159,7 @@ def camera_of(prompt: Prompt) -> Camera | None:
     if heading is None:
         heading = math.atan2(gaze.y - position.y, gaze.x - position.x)
     eyes = position + Vec3(
-        _EYES_AHEAD_M * math.cos(heading), _EYES_AHEAD_M * math.sin(heading), _EYES_M
+        _EYES_AHEAD_M * math.cos(heading), _EYES_AHEAD_M * math.sin(heading), EYES_M
     )
     line = gaze - eyes
     flat = math.hypot(line.x, line.y)
