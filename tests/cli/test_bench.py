@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from tests.cli.process import SMALL, adamo
 
-SMALLEST = ("--resolution", "160x90")
+SMALLEST = ("--resolution", "160x90", "--set", "limits.max_steps=6")
 STUDY = ("bench", "--tasks", "T1,T8", "--model", "random", "--repetitions", "2", *SMALLEST)
 
 

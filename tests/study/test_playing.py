@@ -17,7 +17,8 @@ from adamo_vh.study.plan import Planned, Study, plan
 from adamo_vh.study.playing import ASIDE, play, set_aside
 from adamo_vh.study.store import episode_folder
 
-STUDY = Study(("T4",), models=("baseline", "random"), settings={"resolution": "320x180"})
+SHORT = {"resolution": "320x180", "limits.max_steps": 10}
+STUDY = Study(("T4",), models=("baseline", "random"), settings=SHORT)
 BASELINE, RANDOM = plan(STUDY)
 
 
