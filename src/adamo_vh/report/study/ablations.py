@@ -20,6 +20,7 @@ _WHAT: dict[str, str] = {
     "grid": "how many reference points stand along each side of the picture",
     "resolution": "the size of the picture",
 }
+_SHORT_FORM = " T is the temperature, p is top-p."
 Measure = tuple[str, Form, Callable[[Figures], float | None], Callable[[Ablated], float | None]]
 _MEASURES: tuple[Measure, ...] = (
     ("Look + first", "number", lambda f: _plus(f.calls["Look"]), lambda p: p.look),
@@ -145,9 +146,20 @@ def _chart(material: Material, axis: str) -> Chart:
         f"ablation-{axis}",
         f"Varied: {axis}",
         "Means over all episodes with each value; the lines on the points of completion are the "
-        "95 % intervals of “would it repeat?”. Hollow marks are the paper’s.",
-        panels=tuple(p for p in panels if any(one.marks for one in p.series)),
+        "95 % intervals of “would it repeat?”. Hollow marks are the paper’s."
+        f"{_SHORT_FORM if axis == 'sampling' else ''}",
+        panels=(panels[0], *(p for p in panels[1:] if _is_told(p))),
     )
+
+
+def _is_told(panel: Panel) -> bool:
+    """Whether a panel has anything to show: a model without tokens takes none with any setting."""
+    return any(mark.y for one in panel.series for mark in one.marks)
+
+
+def _short(value: str) -> str:
+    """A value as there is room for it under a chart."""
+    return value.replace("temperature=", "T=").replace("top_p=", "p=")
 
 
 def _panel(
@@ -169,7 +181,7 @@ def _panel(
             paper.append(Mark(values.index(row.value), known, title=title))
     series.append(Series("GPT-4o (paper)", -1, "marks", tuple(paper)))
     y = _axis(what, [mark.y for one in series for mark in one.marks])
-    return Panel(what, places(values, axis), y, tuple(series))
+    return Panel(what, places(map(_short, values), axis), y, tuple(series))
 
 
 def _axis(what: str, values: Sequence[float]) -> Axis:
