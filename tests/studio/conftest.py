@@ -16,11 +16,12 @@ from adamo_vh.service.app import MAX_BODY_BYTES, serving
 from adamo_vh.service.hosting import Host, Terms
 from adamo_vh.serving.admission import Rules
 from adamo_vh.studio.editing import Editor
-from adamo_vh.studio.face import AT, Studio, studio_face
+from adamo_vh.studio.face import AT, CONTENT_TYPES, Studio, studio_face
 from adamo_vh.studio.library import Library
 from adamo_vh.studio.meshes import Meshes
 from adamo_vh.studio.offer import Offer
 from adamo_vh.studio.rooms import Rooms, RoomTerms
+from adamo_vh.studio.talk import Talk
 
 TOKEN = "a-token-for-tests"
 
@@ -56,7 +57,7 @@ class Served:
         assert self.get(f"/studio/api/rooms/{room}", "DELETE")[0] == 204
 
 
-def made(folder: Path, terms: RoomTerms, runs: list[Path], models: list[str]) -> Studio:
+def made(folder: Path, terms: RoomTerms, runs: list[Path], models: list[str], talk: Talk) -> Studio:
     offer = Offer(models)
     page = folder / "page"
     (page / "assets").mkdir(parents=True)
@@ -66,7 +67,8 @@ def made(folder: Path, terms: RoomTerms, runs: list[Path], models: list[str]) ->
     (folder / "secret.js").write_text("no")
     library = Library([*runs, folder / "runs"])
     editor = Editor(folder / "runs" / "scenes", offer)
-    return Studio(offer, library, Rooms(folder / "runs", offer, terms), Meshes(), editor, page)
+    rooms = Rooms(folder / "runs", offer, terms)
+    return Studio(offer, library, rooms, Meshes(), editor, talk, page)
 
 
 @pytest.fixture(scope="session")
@@ -80,15 +82,15 @@ def serve(
 
         def begin(
             *, runs: list[Path] | None = None, models: list[str] | None = None, token: str = "",
-            **terms: Any,
+            talk: Talk | None = None, **terms: Any,
         ) -> Served:  # fmt: skip
             folder = tmp_path_factory.mktemp("studio")
             chosen = RoomTerms(**{"resolution": "160x90", **terms})
-            studio = made(folder, chosen, runs or [], models or [])
+            studio = made(folder, chosen, runs or [], models or [], talk or Talk())
             host = Host(folder / "served", Terms(resolution="160x90"))
             stack.callback(host.close_all)
             stack.callback(studio.close)
-            rules = Rules(MAX_BODY_BYTES, token=token, browsed=AT)
+            rules = Rules(MAX_BODY_BYTES, content_types=CONTENT_TYPES, token=token, browsed=AT)
             faces = (studio_face(studio),)
             url = stack.enter_context(serving(host, rules=rules, faces=faces))
             return Served(url, studio, folder / "runs")

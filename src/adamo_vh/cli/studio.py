@@ -7,7 +7,9 @@ import threading
 import webbrowser
 from collections.abc import Sequence
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from adamo_vh.cli.episode import RUNS
@@ -19,6 +21,12 @@ from adamo_vh.record.run_folder import EVENTS, MANIFEST
 from adamo_vh.serving.admission import Rules
 from adamo_vh.serving.loopback import is_loopback
 from adamo_vh.study.store import is_study
+
+if TYPE_CHECKING:
+    from adamo_vh.studio.talk import Talk
+
+NONE = "none"
+"""In place of ears or a voice: there are none."""
 
 
 def studio(
@@ -33,6 +41,8 @@ def studio(
     scenes: Sequence[Path],
     most_rooms: int,
     resolution: str,
+    ears: str,
+    voice: str,
     opens: bool,
 ) -> None:
     """Serve the studio until the process is told to stop; every record is whole then.
@@ -48,6 +58,8 @@ def studio(
         scenes: Scene files that may be chosen.
         most_rooms: So many rooms are open at once.
         resolution: Of the pictures that a mind is shown.
+        ears: What hears; empty for what was fetched, `NONE` for nothing.
+        voice: What speaks, likewise.
         opens: Whether the page is opened in a browser.
 
     Raises:
@@ -55,7 +67,7 @@ def studio(
     """
     with extra("serve", "The studio"):
         from adamo_vh.service.app import FACES, MAX_BODY_BYTES, serving
-        from adamo_vh.studio.face import AT, Studio, studio_face
+        from adamo_vh.studio.face import AT, CONTENT_TYPES, Studio, studio_face
     from adamo_vh.service.hosting import Host, Terms
     from adamo_vh.studio.editing import Editor
     from adamo_vh.studio.library import Library
@@ -67,13 +79,19 @@ def studio(
         _check(folder)
     key = key_of(token, "--token")
     own = () if is_loopback(address) or address in ("0.0.0.0", "::") else (address,)
-    rules = Rules(MAX_BODY_BYTES, token=key, hosts=(*own, *hosts), browsed=AT)
+    rules = Rules(
+        MAX_BODY_BYTES,
+        content_types=CONTENT_TYPES,
+        token=key,
+        hosts=(*own, *hosts),
+        browsed=AT,
+    )
     parent = out or RUNS
     offer = Offer(models, scenes)
     rooms = Rooms(parent, offer, RoomTerms(most=most_rooms, resolution=resolution))
-    shown = Studio(
-        offer, Library([*(runs or ()), parent]), rooms, Meshes(), Editor(parent / "scenes", offer)
-    )
+    editor = Editor(parent / "scenes", offer)
+    library = Library([*(runs or ()), parent])
+    shown = Studio(offer, library, rooms, Meshes(), editor, _talk(ears, voice))
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
@@ -95,6 +113,27 @@ def studio(
         shown.close()
         host.close_all()
     say("stopped; every record is whole")
+
+
+def _talk(ears: str, voice: str) -> Talk:
+    """Ears and voice as they were named, or as they were fetched; a wrong name is told now.
+
+    Raises:
+        ConfigError: A model was not fetched, or a package or program is missing.
+    """
+    from adamo_vh.speech.models import MODELS, recognizer
+    from adamo_vh.speech.models import voice as speaks
+    from adamo_vh.studio.talk import Talk
+
+    here = {model.kind: model.name for model in reversed(MODELS) if model.is_here}
+    hears_by = ears or (here.get("hears", NONE) if find_spec("faster_whisper") else NONE)
+    says_by = voice or (here.get("speaks", NONE) if find_spec("pipersynth") else NONE)
+    heard = recognizer(hears_by) if ears and hears_by != NONE else None
+    spoken = speaks(says_by) if voice and says_by != NONE else None
+    return Talk(
+        None if hears_by == NONE else lambda: heard or recognizer(hears_by),
+        None if says_by == NONE else lambda: spoken or speaks(says_by),
+    )
 
 
 def _check(folder: Path) -> None:

@@ -42,6 +42,20 @@ def studio(
         list[str] | None,
         typer.Option(help="One more name under which this machine is asked; may be repeated."),
     ] = None,
+    ears: Annotated[
+        str,
+        typer.Option(
+            help="What hears: a model's name or folder, or none; what was fetched, by default.",
+            show_default=False,
+        ),
+    ] = "",
+    voice: Annotated[
+        str,
+        typer.Option(
+            help="Her voice: a name, FILE.onnx, flite, or none; what was fetched, by default.",
+            show_default=False,
+        ),
+    ] = "",
     rooms: Annotated[
         int, typer.Option(help="So many rooms are open at once; each takes 0.4 GB.", min=1)
     ] = 4,
@@ -63,5 +77,7 @@ def studio(
         scenes=scene or [],
         most_rooms=rooms,
         resolution=resolution,
+        ears=ears,
+        voice=voice,
         opens=open_page,
     )

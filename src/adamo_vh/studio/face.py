@@ -7,7 +7,7 @@ import gzip
 import json
 from collections.abc import AsyncIterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -29,12 +29,15 @@ from adamo_vh.studio.live import Connection
 from adamo_vh.studio.meshes import Meshes, Packed
 from adamo_vh.studio.offer import Offer
 from adamo_vh.studio.rooms import Asked, Rooms
+from adamo_vh.studio.talk import MOST_WAV_BYTES, Talk, talk_routes
 
 if TYPE_CHECKING:
     from adamo_vh.service.hosting import Host
 
 AT = "/studio"
 """Where the studio is found."""
+CONTENT_TYPES = ("application/json", "audio/wav")
+"""What visitors may send."""
 _UNBUILT = "The page is not built: run npm ci && npm run build in web/."
 _AGAIN_S = "1"
 
@@ -48,11 +51,14 @@ class Studio:
     rooms: Rooms
     meshes: Meshes
     editor: Editor
+    talk: Talk = field(default_factory=Talk)
     page: Path = PAGE
     """The built page."""
 
     def warm(self) -> None:
         """Make what is always needed, so that the first visitor does not wait for it."""
+        with suppress(AdamoError):
+            self.talk.warm()
         with suppress(AdamoError):
             self.meshes.figure(figure_names()[0])
             self.meshes.scene(self.offer.scenes()[0], 0)
@@ -73,6 +79,7 @@ def studio_face(studio: Studio) -> Face:
             _drafts(studio),
             _rooms(studio),
             _runs(studio),
+            talk_routes(studio.talk, f"{AT}/api"),
         ):
             app.include_router(router)
 
@@ -83,7 +90,7 @@ def studio_face(studio: Studio) -> Face:
 
         return open_while_serving()
 
-    return Face("studio", add)
+    return Face("studio", add, ((f"{AT}/api/hear", MOST_WAV_BYTES),))
 
 
 def _page(studio: Studio) -> APIRouter:
@@ -139,7 +146,8 @@ def _choices(studio: Studio) -> APIRouter:
     @router.get("/offer")
     async def offer() -> dict[str, Any]:
         told = await asyncio.to_thread(studio.offer.told)
-        return {**told, "runs": await asyncio.to_thread(studio.library.told)}
+        runs = await asyncio.to_thread(studio.library.told)
+        return {**told, "speech": studio.talk.told(), "runs": runs}
 
     @router.get("/scenes/{scene}.glb")
     async def scene(
