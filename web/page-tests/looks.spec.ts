@@ -10,7 +10,8 @@ const SIZES = [
 for (const size of SIZES) {
   for (const colorScheme of ["light", "dark"] as const) {
     test(`${size.name} and ${colorScheme}: nothing that axe finds serious`, async ({ browser, baseURL }, info) => {
-      const page = await browser.newPage({ baseURL, viewport: size, colorScheme });
+      const context = await browser.newContext({ baseURL, viewport: size, colorScheme });
+      const page = await context.newPage();
       const check = async (what: string): Promise<void> => {
         await page.screenshot({ path: info.outputPath(`${what}-${size.name}-${colorScheme}.png`) });
         const { violations } = await new AxeBuilder({ page }).analyze();
@@ -24,7 +25,7 @@ for (const size of SIZES) {
       await drawn(page);
       await page.waitForTimeout(3000);
       await check("replay");
-      await page.close();
+      await context.close();
     });
   }
 }

@@ -49,7 +49,7 @@ function turnView(show: Show, turn: TurnItem, number: number): HTMLElement {
   const view = el(
     "article",
     { class: "turn" },
-    el("header", {}, title, el("span", {}, seconds(turn)), el("span", {}, clock(turn.t))),
+    el("header", {}, title, el("span", {}, effort(turn)), el("span", {}, clock(turn.t))),
   );
   if (turn.note) {
     const note = el("p", { class: "note" }, ...withTags(show, turn.note));
@@ -75,7 +75,10 @@ function turnView(show: Show, turn: TurnItem, number: number): HTMLElement {
   return view;
 }
 
-const seconds = (turn: TurnItem): string => (turn.seconds >= 0.05 ? `thought for ${turn.seconds.toFixed(1)} s` : "");
+function effort(turn: TurnItem): string {
+  const time = turn.seconds >= 0.05 ? `thought for ${turn.seconds.toFixed(1)} s` : "";
+  return [time, turn.messages ? `read ${turn.messages} messages` : ""].filter(Boolean).join(", ");
+}
 
 function saidView(show: Show, item: SaidItem): HTMLElement {
   if (item.kind === "note") return el("p", { class: "aside" }, item.text);

@@ -20,6 +20,7 @@ export interface Stats {
   pixels: string;
 }
 
+const WARM_FRAMES = 4;
 const REFLECTED = 0.8;
 /** After so long without a change the picture is drawn sharp. */
 const STILL_MS = 350;
@@ -170,11 +171,12 @@ export class Stage {
     this.drawnAt = now;
     const spent = performance.now() - begin;
     const { stats } = this;
-    stats.frames++;
+    // The first pictures wait for programs to be compiled: they say nothing about the others.
+    if (++stats.frames <= WARM_FRAMES) return;
     stats.scriptMs = stats.scriptMs ? stats.scriptMs * 0.9 + spent * 0.1 : spent;
     if (this.drewLast) {
       stats.frameMs = stats.frameMs ? stats.frameMs * 0.85 + since * 0.15 : since;
-      if (stats.frames > 4 && this.quality.note(since)) this.resize();
+      if (this.quality.note(since)) this.resize();
     }
     this.drewLast = true;
   }
