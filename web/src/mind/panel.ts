@@ -15,7 +15,7 @@ export interface Mind {
 export function buildMind(show: Show): Mind {
   const frame = buildFrame(show);
   const turns = buildTurns(show);
-  const root = el("aside", { class: "mind card", attr: { "aria-label": "Her mind" } }, frame.root, turns.root);
+  const root = el("aside", { class: "mind card story-part", attr: { "aria-label": "Her mind" } }, frame.root, turns.root);
   const update = (): void => {
     const { views } = show.story;
     const index = show.player.following ? views.length - 1 : lastBefore(views, show.player.time + 0.001);

@@ -101,7 +101,7 @@ export interface TurnList {
 export function buildTurns(show: Show): TurnList {
   const list = el("div", { class: "turns", attr: { tabindex: "0", role: "log", "aria-label": "Turns", "aria-live": "off" } });
   const count = el("small");
-  const root = el("section", { class: "story mind-part", attr: { "aria-label": "What she thinks and does" } }, el("h2", {}, "Thinks and does", count), list);
+  const root = el("section", { class: "story", attr: { "aria-label": "What she thinks and does" } }, el("h2", {}, "Thinks and does", count), list);
   let version = -1;
   let current = -2;
   let views: HTMLElement[] = [];
