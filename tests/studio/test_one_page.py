@@ -90,6 +90,8 @@ def test_a_run_is_exported_with_meshes_and_pictures(s1_engine, tmp_path):
     words = ["export", str(run), "--to", "page", "--out", str(out)]
     done = CliRunner().invoke(app, words, catch_exceptions=False)
     assert done.exit_code == 0, done.output
+    # The page looks for the track under this name.
+    assert ELEMENT in (PAGE / "assets" / "studio.js").read_text(encoding="utf-8")
     (file,) = out.iterdir()
     html = file.read_text(encoding="utf-8")
     told = embedded(html)

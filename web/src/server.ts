@@ -12,9 +12,20 @@ const PING_MS = 20_000;
 const address = (path: string): URL => new URL(`api/${path}`, document.baseURI);
 const part = encodeURIComponent;
 
-/** The address of a picture or a mesh, if it is one of this server; empty otherwise. */
+/** The element of a page that has its track in itself, and needs no server. */
+const HELD = "adamo-track";
+const HELD_FILES = /^data:(image\/(jpeg|png)|model\/gltf-binary);base64,/;
+
+/** The track that the page itself holds; null on a page of a server. */
+export function heldTrack(): Track | null {
+  const held = document.getElementById(HELD);
+  return held ? trackOf(JSON.parse(held.textContent ?? "")) : null;
+}
+
+/** The address of a picture or a mesh, if the page holds it or it is one of this server; empty otherwise. */
 export function ownAddress(frame: string): string {
   if (!frame) return "";
+  if (HELD_FILES.test(frame)) return frame;
   try {
     const url = new URL(frame, document.baseURI);
     return url.origin === location.origin ? url.href : "";

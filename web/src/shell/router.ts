@@ -2,7 +2,7 @@
 
 import { el } from "../dom.ts";
 import type { Hello } from "../protocol.ts";
-import { getTrack, Live } from "../server.ts";
+import { getTrack, heldTrack, Live } from "../server.ts";
 import { Show } from "../show.ts";
 import { compare } from "../view/comparing.ts";
 import { watch } from "../view/watching.ts";
@@ -20,6 +20,13 @@ export class Router {
   }
 
   start(): void {
+    const held = heldTrack();
+    if (held) {
+      // There is no server to ask for anything else.
+      this.shell.newButton.hidden = this.shell.runsButton.hidden = true;
+      this.open.push(watch(this.shell, new Show(held)));
+      return;
+    }
     addEventListener("hashchange", () => void this.go());
     void this.go();
   }
