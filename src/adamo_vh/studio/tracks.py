@@ -79,6 +79,8 @@ class _Making:
         else:
             try:
                 report = replay_episode(self.folder, watch=self._watch)
+                if report.cut:
+                    self._say("Where a person cut an action short, she jumps to where it ended.")
                 for mismatch in report.mismatches[:3]:
                     self._say(f"It came out otherwise than recorded: {mismatch}.")
             except AdamoError as error:
@@ -103,10 +105,11 @@ class _Making:
         return True
 
     def _heard(self, event: Event) -> None:
-        # What came before the first instruction is no part of what is executed.
-        self._came = next(i for i in range(self._came, len(self.events)) if event == self.events[i])
-        self._telling.notify(event)
-        self._came += 1
+        # What came before the first instruction is not executed: its state holds it already.
+        place = next(i for i in range(self._came, len(self.events)) if event == self.events[i])
+        for told in self.events[self._came : place + 1]:
+            self._telling.notify(told)
+        self._came = place + 1
 
     def _say(self, text: str) -> None:
         self._telling.tell(messages.notice(text, "warning"))
