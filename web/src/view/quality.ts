@@ -7,7 +7,6 @@ export interface Level {
 }
 
 export const LEVELS: readonly Level[] = [
-  { pixels: 0.4, shadow: 1024 },
   { pixels: 0.5, shadow: 1024 },
   { pixels: 0.62, shadow: 1024 },
   { pixels: 0.75, shadow: 1024 },
@@ -21,11 +20,17 @@ const CALM = 8;
 /** So many frames are looked at before the level changes again. */
 
 export class Quality {
-  level = LEVELS.length - 1;
+  level: number;
   /** Mean time between two pictures of a movement, milliseconds. */
   frameMs = 0;
   private count = 0;
-  private ceiling = LEVELS.length - 1;
+  private ceiling: number;
+
+  /** Where a processor draws, it begins coarse, and gets no finer than that allows. */
+  constructor(isPlain = false) {
+    this.level = isPlain ? 1 : LEVELS.length - 1;
+    this.ceiling = LEVELS.length - 1;
+  }
 
   /** Take note of the time since the last picture. Returns whether the level changed. */
   note(ms: number): boolean {

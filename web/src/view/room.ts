@@ -4,6 +4,7 @@ import {
   Box3,
   DataTexture,
   Group,
+  LinearMipmapNearestFilter,
   type Material,
   type Mesh,
   MeshBasicMaterial,
@@ -60,7 +61,8 @@ export class Room {
       node.userData.objectId = object.id;
       for (const mesh of meshesIn(node)) {
         mesh.receiveShadow = true;
-        mesh.castShadow = (mesh.material as Material).name !== "glass";
+        // Small things have their contact shadow; a processor has no time for a second one.
+        mesh.castShadow = !isPlain && (mesh.material as Material).name !== "glass";
         mesh.userData.objectId = object.id;
       }
       this.things.set(object.id, node);
@@ -126,7 +128,10 @@ function surface(material: Material, ambience: Ambience, isPlain: boolean): Mate
     material.emissive.copy(material.color).multiplyScalar(0.55);
     material.map = WHITE; // One program less to compile.
   }
-  if (material.map) material.map.anisotropy = isPlain ? 1 : 4;
+  if (material.map) {
+    material.map.anisotropy = isPlain ? 1 : 4;
+    if (isPlain) material.map.minFilter = LinearMipmapNearestFilter;
+  }
   if (name === "glass") material.depthWrite = false;
   const look = isPlain ? plain(material) : material;
   dimBy(look, ambience);

@@ -32,7 +32,7 @@ export type Tick = (seconds: number) => boolean;
 
 export class Stage {
   readonly scene = new Scene();
-  readonly quality = new Quality();
+  readonly quality: Quality;
   readonly stats: Stats = { frames: 0, frameMs: 0, scriptMs: 0, calls: 0, triangles: 0, pixels: "" };
   private readonly lights: Lights;
   private readonly contact: ContactShadows;
@@ -57,6 +57,7 @@ export class Stage {
     private readonly tick: Tick,
     private readonly isPlain: boolean,
   ) {
+    this.quality = new Quality(isPlain);
     this.lights = lightRoom(hello.scene, room.window, isPlain);
     this.contact = new ContactShadows(hello.scene.objects);
     this.scene.background = new Color(0x1a1714);
@@ -184,7 +185,7 @@ export class Stage {
   private draw(): void {
     const { renderer, cameras, stats } = this;
     const now = performance.now();
-    if (this.shadowsLate && (!this.isPlain || now - this.shadowsAt > SHADOWS_MS)) {
+    if (this.shadowsLate && (!this.isPlain || now - this.shadowsAt > Math.max(SHADOWS_MS, this.stats.frameMs * 4))) {
       this.lights.refresh();
       this.shadowsLate = false;
       this.shadowsAt = now;
