@@ -178,16 +178,24 @@ def scene_glb(file: str, variation: int = 0) -> bytes:
 
 
 def figure_glb(who: str) -> bytes:
-    """A figure as a skinned GLB with its clips.
+    """A figure as a skinned GLB with its clips; kept in the cache like a scene.
 
     Raises:
         ConfigError: No figure has this name.
     """
+    from adamo_vh.runtime import human
+    from adamo_vh.runtime.assets.bake import cached
     from adamo_vh.runtime.human.clips import clips
     from adamo_vh.runtime.human.glb import figure_glb as written
     from adamo_vh.runtime.human.looks import load_figure
 
-    return written(load_figure(who), clips())
+    figure = load_figure(who)
+    digest = sha256()
+    for path in sorted(Path(human.__path__[0]).rglob("*")):
+        if path.suffix == ".py" or path.stem == who:
+            digest.update(path.read_bytes())
+    name = f"figure_{who}_{digest.hexdigest()[:24]}.glb"
+    return cached(name, lambda: written(figure, clips()))
 
 
 def figure_names() -> tuple[str, ...]:
