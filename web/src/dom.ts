@@ -56,6 +56,8 @@ export function icon(path: string): SVGSVGElement {
 }
 
 export const ICONS = {
+  mic: "M12 3a3 3 0 0 0-3 3v5a3 3 0 0 0 6 0V6a3 3 0 0 0-3-3zM6 11a6 6 0 0 0 12 0M12 17v4M9 21h6",
+  speaker: "M4 10v4h4l5 4V6L8 10zM16 9a4 4 0 0 1 0 6M18.500 6.500a8 8 0 0 1 0 11",
   send: "M5 12h13M12 5l7 7-7 7",
   stop: "M7 7h10v10H7z",
   undo: "M9 7L4 12l5 5M4 12h10a5 5 0 0 1 0 10h-2",

@@ -3,6 +3,7 @@
 import type { Message, Offer, RoomWish, Said } from "./protocol.ts";
 import { fields, list, number, readMessage, text } from "./reading.ts";
 import { Track } from "./track/track.ts";
+import type { Phoneme } from "./view/face.ts";
 
 const AGAIN_MS = [500, 1000, 2000, 4000, 8000];
 /** Close code for a room that there is not. */
@@ -80,6 +81,26 @@ export async function getOffer(): Promise<Offer> {
         when: text(r.when),
       })),
   };
+}
+
+/** Whether the server hears what is said, and speaks. */
+export async function getSpeech(): Promise<{ hears: boolean; speaks: boolean }> {
+  const from = fields(fields(await json("offer")).speech);
+  return { hears: from.hears === true, speaks: from.speaks === true };
+}
+
+/** What is said in a WAV file; empty if nobody spoke. */
+export async function hear(sound: Blob): Promise<string> {
+  const init = { method: "POST", headers: { "content-type": "audio/wav" }, body: sound };
+  return text(fields(await json("hear", init)).text);
+}
+
+/** The address of the sound of a text, and the moments of its speech sounds. */
+export async function speak(said: string): Promise<{ sound: string; phonemes: Phoneme[] }> {
+  const init = { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify({ text: said }) };
+  const from = fields(await json("speak", init));
+  const phonemes = list(from.phonemes).map(list).map(([symbol, start, end]): Phoneme => [text(symbol), number(start), number(end)]);
+  return { sound: ownAddress(text(from.sound)), phonemes };
 }
 
 export async function openRoom(wish: RoomWish): Promise<string> {

@@ -23,12 +23,12 @@ export interface Desk {
   update: () => void;
 }
 
-export function buildDesk(show: Show, timeline: HTMLElement): Desk {
+export function buildDesk(show: Show, timeline: HTMLElement, speech: HTMLElement | null): Desk {
   const dot = el("span", { class: "dot", attr: { "aria-hidden": "true" } });
   const doing = el("span", { attr: { "aria-live": "polite" } });
   const spent = el("span", { class: "spent" });
   const state = el("div", { class: "state" }, dot, doing, spent);
-  const talk = show.hello.live ? talkRow(show) : null;
+  const talk = show.hello.live ? talkRow(show, speech) : null;
   timeline.classList.add("room-part");
   const tick = show.may("approval") && !show.may("act") ? approvalTick(show) : null;
   const root = el("section", { class: "desk card", attr: { "aria-label": "Talk and time" } }, state, talk?.form, tick, timeline);
@@ -53,7 +53,7 @@ function replayWords(show: Show): string {
   return now === "idle" || now === "closed" ? "Replay" : `Replay: ${DOING[now].toLowerCase()}`;
 }
 
-function talkRow(show: Show): { form: HTMLElement; box: HTMLInputElement; update: () => void } {
+function talkRow(show: Show, speech: HTMLElement | null): { form: HTMLElement; box: HTMLInputElement; update: () => void } {
   const looks = { type: "text", id: "talk-box" };
   const attr = { placeholder: "Tell her what to do", autocomplete: "off", maxlength: "2000", enterkeyhint: "send" };
   const box = el("input", { ...looks, attr });
@@ -63,7 +63,7 @@ function talkRow(show: Show): { form: HTMLElement; box: HTMLInputElement; update
   stop.addEventListener("click", () => show.say({ type: "stop" }));
   undo.addEventListener("click", () => show.say({ type: "undo" }));
   const label = el("label", { class: "unseen", for: "talk-box" }, "Tell her what to do");
-  const form = el("form", { class: "talk talk-part" }, label, box, send, stop, undo);
+  const form = el("form", { class: "talk talk-part" }, label, box, speech, send, stop, undo);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     const text = box.value.trim();

@@ -2,6 +2,7 @@
 
 import { type Bone, Group, type Material, Matrix4, type Object3D, type SkinnedMesh, Vector3 } from "three";
 import type { Ambience } from "./ambience.ts";
+import { Face } from "./face.ts";
 import { bonesByName, loadGltf, nodesByName, skinnedIn } from "./loading.ts";
 import { looks } from "./room.ts";
 import type { Moment } from "../track/track.ts";
@@ -14,9 +15,11 @@ const EYES = new Vector3(0.09, 0, 0.085);
 export class Figure {
   readonly group = new Group();
   readonly meshes: SkinnedMesh[];
+  readonly face: Face;
   private readonly head: Bone | undefined;
   private readonly headMeshes: Object3D[];
   private readonly feet: Bone[];
+  private readonly lids: number;
   private readonly hand: Bone | undefined;
 
   private constructor(
@@ -29,6 +32,8 @@ export class Figure {
   ) {
     this.meshes = skinnedIn(scene);
     this.headMeshes = this.meshes.filter((mesh) => HEAD.includes((mesh.material as Material).name));
+    this.face = new Face(this.meshes.filter((mesh) => mesh.morphTargetDictionary));
+    this.lids = bones.indexOf(byName.get("eyelids"));
     this.head = byName.get("head");
     this.hand = byName.get("hand_r");
     this.feet = ["foot_l", "foot_r"].map((name) => byName.get(name)).filter((bone) => bone !== undefined);
@@ -55,10 +60,12 @@ export class Figure {
     this.root.quaternion.set(0, 0, Math.sin(heading / 2), Math.cos(heading / 2));
     this.bones.forEach((bone, i) => {
       const q = moment.joints;
-      if (bone && q.length >= i * 4 + 4) {
+      if (bone && i !== this.lids && q.length >= i * 4 + 4) {
         bone.quaternion.set(q[i * 4] ?? 0, q[i * 4 + 1] ?? 0, q[i * 4 + 2] ?? 0, q[i * 4 + 3] ?? 1);
       }
     });
+    // The lids turn about the Y axis; the face has a shape for it that lies flush.
+    if (this.lids >= 0) this.face.turnLids(2 * Math.asin(moment.joints[this.lids * 4 + 1] ?? 0));
     this.bones[0]?.position.set(...moment.pelvis);
     this.group.updateMatrixWorld(true);
   }

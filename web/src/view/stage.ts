@@ -160,6 +160,7 @@ export class Stage {
     const begin = performance.now();
     const seconds = Math.min(since / 1000, 0.25);
     if (this.tick(seconds)) this.dirty = true;
+    if (this.figure.face.update(seconds)) this.dirty = true;
     if (this.moment && this.cameras.update(this.moment, this.figure, seconds)) this.dirty = true;
     if (!this.dirty || !this.moment) {
       this.drewLast = false;

@@ -6,6 +6,7 @@ import { type Shell, setBadge, tabs } from "../shell/shell.ts";
 import { buildTimeline } from "../shell/timeline.ts";
 import type { Show } from "../show.ts";
 import { buildDesk } from "../talk/desk.ts";
+import { buildSpeech } from "../talk/speech.ts";
 import { text } from "../reading.ts";
 import { el, write } from "../dom.ts";
 import { buildApproval } from "../take/approve.ts";
@@ -23,7 +24,8 @@ export interface Watching {
 export function watch(shell: Shell, show: Show): Watching {
   const timeline = buildTimeline(show);
   const mind = buildMind(show);
-  const desk = buildDesk(show, timeline.root);
+  const speech = show.may("say") ? buildSpeech(show, () => seeing.stage?.figure.face ?? null) : null;
+  const desk = buildDesk(show, timeline.root, speech?.buttons ?? null);
   const seeing = new Seeing(show, () => {
     timeline.update();
     mind.update();
@@ -61,6 +63,7 @@ export function watch(shell: Shell, show: Show): Watching {
     seeing,
     close: () => {
       deaf();
+      speech?.close();
       show.live?.close();
       seeing.stage?.close();
     },
