@@ -53,6 +53,8 @@ describe("a face", () => {
     face.turnLids(0.36);
     expect(face.update(0.02)).toBe(true);
     expect(lids.morphTargetInfluences?.[0]).toBeCloseTo(0.5);
+    // What does not move need not be drawn again.
+    expect(face.update(0.02)).toBe(false);
     face.turnLids(0);
     face.update(0.02);
     expect(lids.morphTargetInfluences?.[0]).toBe(0);

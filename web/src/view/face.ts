@@ -43,6 +43,7 @@ export class Face {
   private clock: (() => number) | null = null;
   private listening = false;
   private lids = 0;
+  private shut = 0;
   private blinkAt: number;
   private time = 0;
 
@@ -97,12 +98,9 @@ export class Face {
     if (since > BLINK_S) this.blinkAt = this.time + this.pause();
     const own = since < 0 || since > BLINK_S ? 0 : Math.sin((Math.PI * since) / BLINK_S);
     const shut = Math.max(own, this.lids);
-    const moved = shut !== (this.now.get("eyeBlinkLeft") ?? 0);
-    for (const side of ["eyeBlinkLeft", "eyeBlinkRight"]) {
-      this.now.delete(side);
-      this.put(side, shut);
-    }
-    if (shut) this.now.set("eyeBlinkLeft", shut);
+    const moved = shut !== this.shut;
+    this.shut = shut;
+    for (const side of ["eyeBlinkLeft", "eyeBlinkRight"]) this.put(side, shut);
     return moved;
   }
 
