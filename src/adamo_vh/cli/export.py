@@ -7,11 +7,12 @@ from pathlib import Path
 
 import typer
 
-from adamo_vh.adapters.exports.exporting import Write, export
+from adamo_vh.adapters.exports.exporting import FORMATS, Write, export
 from adamo_vh.adapters.exports.form import Form
 from adamo_vh.adapters.exports.recorded import Choice
 from adamo_vh.cli.exits import Exit
 from adamo_vh.cli.terminal import line, put_json, say
+from adamo_vh.errors import ConfigError
 from adamo_vh.extras import extra
 
 PAGE = "page"
@@ -27,6 +28,8 @@ def export_and_show(
         with extra("serve", "The page"):
             from adamo_vh.studio.one_page import write_pages
         write = write_pages
+    elif to.lower() not in FORMATS:
+        raise ConfigError(f"There is no format {to!r}. Use one of {', '.join((*FORMATS, PAGE))}.")
     done = export(runs, to, out, choice=choice, form=form, write=write)
     if as_json:
         put_json(
