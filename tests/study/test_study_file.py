@@ -51,7 +51,11 @@ def test_options_replace_what_the_file_says(tmp_path: Path) -> None:
 def test_a_file_may_start_from_one_of_the_papers_studies(tmp_path: Path) -> None:
     study = read_study(_file(tmp_path, 'study = "memory"\nrepetitions = 2\naxes.grid = [3]\n'), {})
     assert study.repetitions == 2
-    assert dict(study.axes) == {"k": (4, 6, 10, 50), "grid": (3,)}
+    assert dict(study.axes) == {
+        "k": (4, 6, 10, 50),
+        "switches.buffer_unit": ("step", "block"),
+        "grid": (3,),
+    }
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,7 @@ from adamo_vh.benchmark.tasks.reading import parse_task, read_task
 from adamo_vh.benchmark.tasks.writing import task_text
 from adamo_vh.benchmark.taxonomy import COSTS, Act, Difficulty, Ref, Rel
 from adamo_vh.errors import AdamoError, ConfigError, FileError
+from adamo_vh.readable import readable
 
 FILE = """
 id = "TIDY-1"
@@ -69,7 +70,7 @@ several = st.recursive(
 ).filter(lambda condition: _depth(condition) <= 6)
 prompts = st.text(
     st.characters(exclude_categories=["C", "Zl", "Zp"]), min_size=1, max_size=80
-).filter(lambda text: bool(text.strip()))
+).filter(lambda text: bool(text.strip()) and readable(text) == text)
 
 
 def _depth(condition: Condition) -> int:

@@ -114,7 +114,7 @@ def test_questions_are_answered_by_what_is_known(text, says, never):
         ("Plate_57", "Plate", "57", "Plate"),
         ("57", "", "57", None),
         ("Wine_Bottle_36", "Wine_Bottle", "36", "WineBottle"),
-        ("blue_cup", "blue_cup", "", None),
+        ("blue_cup", "blue_cup", "", "Cup"),
         ("thing-a", "thing-a", "", None),
     ],
 )
