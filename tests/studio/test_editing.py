@@ -78,5 +78,8 @@ def test_the_catalog_has_what_can_stand_in_a_scene(served):
     names = {item["name"] for item in told["furniture"]}
     assert {"sofa", "dining_table"} <= names
     assert all(len(item["size"]) == 3 for item in (*told["furniture"], *told["objects"]))
+    shelf = next(item for item in told["furniture"] if item["name"] == "tall_shelf")
+    heights = {surface["name"]: surface["center"][2] for surface in shelf["surfaces"]}
+    assert list(heights) == ["lower", "middle", "top"] and heights["lower"] < heights["top"] < 2
     assert served.get("/studio/api/assets/plate.glb")[2][:4] == b"glTF"
     assert served.get("/studio/api/assets/..%2fplate.glb")[0] in (400, 404)

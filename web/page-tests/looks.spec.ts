@@ -25,6 +25,11 @@ for (const size of SIZES) {
       await drawn(page);
       await page.waitForTimeout(3000);
       await check("replay");
+      await page.goto("?y#edit=s2");
+      await drawn(page);
+      await page.getByRole("button", { name: "sofa", exact: true }).click();
+      await page.waitForTimeout(3000);
+      await check("editor");
       await context.close();
     });
   }

@@ -1,4 +1,4 @@
-// Opens what the address asks for: #room=ID a live room, #run=NAME a replay, #compare=A,B two of them.
+// Opens what the address asks for: #room=ID a live room, #run=NAME a replay, #compare=A,B two of them, #edit=SCENE the editor.
 
 import "./style/main.css";
 import { buildShell } from "./shell/shell.ts";

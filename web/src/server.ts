@@ -10,7 +10,7 @@ const AGAIN_MS = [500, 1000, 2000, 4000, 8000];
 const GONE = 4404;
 const PING_MS = 20_000;
 
-const address = (path: string): URL => new URL(`api/${path}`, document.baseURI);
+export const addressOf = (path: string): URL => new URL(`api/${path}`, document.baseURI);
 const part = encodeURIComponent;
 
 /** The element of a page that has its track in itself, and needs no server. */
@@ -47,14 +47,17 @@ async function problem(answer: Response): Promise<Error> {
   return new Error(`The server answered ${answer.status}.`);
 }
 
-async function json(path: string, init?: RequestInit): Promise<unknown> {
-  const answer = await fetch(address(path), init);
+export async function getJson(path: string, init?: RequestInit): Promise<unknown> {
+  const answer = await fetch(addressOf(path), init);
   if (!answer.ok) throw await problem(answer);
   return answer.json();
 }
 
+export const postJson = (path: string, body: unknown): Promise<unknown> =>
+  getJson(path, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+
 export async function getOffer(): Promise<Offer> {
-  const from = fields(await json("offer"));
+  const from = fields(await getJson("offer"));
   return {
     scenes: list(from.scenes).map(fields).map((s) => ({ name: text(s.name), title: text(s.title) || text(s.name) })),
     tasks: list(from.tasks)
@@ -85,37 +88,31 @@ export async function getOffer(): Promise<Offer> {
 
 /** Whether the server hears what is said, and speaks. */
 export async function getSpeech(): Promise<{ hears: boolean; speaks: boolean }> {
-  const from = fields(fields(await json("offer")).speech);
+  const from = fields(fields(await getJson("offer")).speech);
   return { hears: from.hears === true, speaks: from.speaks === true };
 }
 
 /** What is said in a WAV file; empty if nobody spoke. */
 export async function hear(sound: Blob): Promise<string> {
   const init = { method: "POST", headers: { "content-type": "audio/wav" }, body: sound };
-  return text(fields(await json("hear", init)).text);
+  return text(fields(await getJson("hear", init)).text);
 }
 
 /** The address of the sound of a text, and the moments of its speech sounds. */
 export async function speak(said: string): Promise<{ sound: string; phonemes: Phoneme[] }> {
-  const init = { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify({ text: said }) };
-  const from = fields(await json("speak", init));
+  const from = fields(await postJson("speak", { text: said }));
   const phonemes = list(from.phonemes).map(list).map(([symbol, start, end]): Phoneme => [text(symbol), number(start), number(end)]);
   return { sound: ownAddress(text(from.sound)), phonemes };
 }
 
 export async function openRoom(wish: RoomWish): Promise<string> {
-  const answer = await json("rooms", {
-    method: "POST",
-    headers: { "content-type": "application/json" },
-    body: JSON.stringify(wish),
-  });
-  return text(fields(answer).room);
+  return text(fields(await postJson("rooms", wish)).room);
 }
 
 /** A run as a track. The server makes it on the first request, which takes a while. */
 export async function getTrack(run: string, waiting: () => void): Promise<Track> {
   for (;;) {
-    const answer = await fetch(address(`runs/${run.split("/").map(part).join("/")}/track`));
+    const answer = await fetch(addressOf(`runs/${run.split("/").map(part).join("/")}/track`));
     if (answer.status === 202) {
       waiting();
       const wait = number(Number(answer.headers.get("retry-after")), 1) || 1;
@@ -161,7 +158,7 @@ export class Live {
   }
 
   private open(): void {
-    const url = address(`rooms/${part(this.room)}/live?from=${this.next}`);
+    const url = addressOf(`rooms/${part(this.room)}/live?from=${this.next}`);
     url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
     const socket = new WebSocket(url);
     this.socket = socket;

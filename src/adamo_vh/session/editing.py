@@ -91,9 +91,9 @@ def catalog() -> dict[str, list[dict[str, Any]]]:
 
     def told(name: str) -> dict[str, Any]:
         asset = load_asset(name)
-        levels = [surface.name for surface in asset.surfaces]
+        surfaces = [asdict(surface) for surface in asset.surfaces]
         size = list(asset.size)
-        return {"name": name, "class_name": asset.class_name, "size": size, "levels": levels}
+        return {"name": name, "class_name": asset.class_name, "size": size, "surfaces": surfaces}
 
     return {
         "furniture": [told(name) for name in sorted(FURNITURE)],

@@ -1,6 +1,7 @@
 // From the address to what is shown.
 
 import { el } from "../dom.ts";
+import { edit, loadEdit } from "../edit/editing.ts";
 import type { Hello } from "../protocol.ts";
 import { getTrack, heldTrack, Live } from "../server.ts";
 import { Show } from "../show.ts";
@@ -39,10 +40,12 @@ export class Router {
     document.querySelectorAll("dialog[open]").forEach((dialog) => (dialog as HTMLDialogElement).close());
     const room = asked.get("room");
     const run = asked.get("run");
+    const scene = asked.get("edit");
     const pair = (asked.get("compare") ?? "").split(",").filter(Boolean).map(decodeURIComponent);
     try {
       if (room) this.goLive(room, turn);
       else if (run) await this.goReplay(run, turn);
+      else if (scene) await this.goEdit(scene, turn);
       else if (pair.length === 2) await this.goCompare(pair, turn);
       else {
         this.wait("");
@@ -89,6 +92,13 @@ export class Router {
     const [first, second] = await Promise.all(runs.map((run) => getTrack(run, () => undefined)));
     if (turn !== this.turn || !first || !second) return;
     this.open.push(compare(this.shell, [new Show(first), new Show(second)]));
+  }
+
+  private async goEdit(scene: string, turn: number): Promise<void> {
+    this.wait("Opening the scene");
+    const { data, catalog } = await loadEdit(scene);
+    if (turn !== this.turn) return;
+    this.open.push(edit(this.shell, scene, data, catalog));
   }
 
   private async goReplay(run: string, turn: number): Promise<void> {

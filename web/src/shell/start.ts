@@ -70,14 +70,14 @@ function tasks(offer: Offer, scene: string): Choice[] {
   ];
 }
 
-/** Ask what to start, and go there. */
-export async function openStart(): Promise<void> {
+/** Ask what to start, and go there; a scene may be chosen beforehand. */
+export async function openStart(chosen = ""): Promise<void> {
   const problem = problemLine();
   const waiting = el("p", { class: "lead" }, "One moment");
   const made = dialog("A person in a room", "Talk to her, watch her think, and see what she does.", waiting, problem);
   try {
     const offer = await getOffer();
-    waiting.replaceWith(form(offer, problem));
+    waiting.replaceWith(form(offer, problem, chosen));
     made.querySelector("select")?.focus();
   } catch (error) {
     waiting.remove();
@@ -85,9 +85,10 @@ export async function openStart(): Promise<void> {
   }
 }
 
-function form(offer: Offer, problem: HTMLElement): HTMLElement {
+function form(offer: Offer, problem: HTMLElement, chosen: string): HTMLElement {
   const scenes = offer.scenes.map(({ name, title }) => ({ value: name, words: title }));
   const [sceneField, scene] = choose("Room", "start-scene", scenes);
+  if (scenes.some(({ value }) => value === chosen)) scene.value = chosen;
   const [figureField, figure] = choose("Person", "start-figure", offer.figures.map((value) => ({ value, words: value.charAt(0).toUpperCase() + value.slice(1) })));
   const [modelField, model] = choose("Mind", "start-model", models(offer), true);
   const [taskField, task] = choose("Task", "start-task", tasks(offer, scene.value), true);
@@ -104,8 +105,13 @@ function form(offer: Offer, problem: HTMLElement): HTMLElement {
   const approve = el("input", { type: "checkbox", id: "start-approve" });
   const tick = el("div", { class: "tick" }, approve, el("label", { for: "start-approve" }, "Ask me before every action"));
   const start = el("button", { class: "button main", type: "submit" }, "Open the room");
+  const change = el("button", { class: "button", type: "button" }, "Edit a scene");
+  change.addEventListener("click", () => {
+    change.closest("dialog")?.close(); // Also if the address stays as it is.
+    location.hash = `edit=${encodeURIComponent(scene.value)}`;
+  });
   const grid = el("div", { class: "grid" }, sceneField, figureField, modelField, nameField, taskField, profileField, labelingField);
-  const made = el("form", { class: "sheet-form" }, grid, tick, el("footer", {}, start));
+  const made = el("form", { class: "sheet-form" }, grid, tick, el("footer", {}, change, start));
   scene.addEventListener("change", () => setChoices(task, tasks(offer, scene.value)));
   made.addEventListener("submit", (event) => {
     event.preventDefault();

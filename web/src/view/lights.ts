@@ -25,6 +25,9 @@ const SKY = 0xf3f6ff;
 
 const SKY_SHARE = 1.55;
 
+/** How far a room reaches. */
+type Extent = Pick<SceneShape, "x_min" | "x_max" | "y_min" | "y_max" | "height_m">;
+
 export interface Lights {
   group: Group;
   /** Change the brightness: 1 is a lit room, 0 a dark one. */
@@ -87,7 +90,7 @@ export function isSoftware(): boolean {
  * @param window Where the window is; null if there is none.
  * @param isPlain Leave out what costs much; the surroundings then come from here.
  */
-export function lightRoom(scene: SceneShape, window: Vector3 | null, isPlain: boolean): Lights {
+export function lightRoom(scene: Extent, window: Vector3 | null, isPlain: boolean): Lights {
   const group = new Group();
   const middle = new Vector3((scene.x_min + scene.x_max) / 2, (scene.y_min + scene.y_max) / 2, 0);
   const [width, depth] = [scene.x_max - scene.x_min, scene.y_max - scene.y_min];

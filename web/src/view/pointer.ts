@@ -1,9 +1,16 @@
 // The pointer over the room: turns, moves and zooms the free camera; everything else is asked first.
 
-import type { Cameras } from "./cameras.ts";
-
 const TURN = 0.006;
 const CLICK_PX = 5;
+
+/** The camera that is moved. */
+export interface Steered {
+  readonly kind: string;
+  choose: (kind: "free") => void;
+  turn: (dx: number, dy: number) => void;
+  zoom: (factor: number) => void;
+  pan: (dx: number, dy: number) => void;
+}
 
 export interface PointerUser {
   /** Returns true to have the movement for itself, e.g. to drag a thing. */
@@ -16,7 +23,7 @@ export interface PointerUser {
   steered: () => void;
 }
 
-export function steer(canvas: HTMLCanvasElement, cameras: Cameras, user: PointerUser): void {
+export function steer(canvas: HTMLCanvasElement, cameras: Steered, user: PointerUser): void {
   const held = new Map<number, { x: number; y: number }>();
   let begin = { x: 0, y: 0 };
   let taken = false;

@@ -102,7 +102,7 @@ function windowOf(meshes: readonly Mesh[]): Vector3 | null {
 const made = new WeakMap<Material, Material>();
 
 /** The look of a material of the file under this light; plain where a processor draws. */
-export function looks(material: Material, ambience: Ambience, isPlain: boolean): Material {
+export function looks(material: Material, ambience: Ambience | null, isPlain: boolean): Material {
   const known = made.get(material);
   if (known) return known;
   const look = material.name === "outside" ? outside(material) : surface(material, ambience, isPlain);
@@ -118,7 +118,7 @@ function outside(material: Material): Material {
 
 const ROUGHNESS: Record<string, number> = { parquet: 0.52, walls: 0.95, glass: 0.12, head: 0.62, hands: 0.62, eyes: 0.15, hair: 0.6 };
 
-function surface(material: Material, ambience: Ambience, isPlain: boolean): Material {
+function surface(material: Material, ambience: Ambience | null, isPlain: boolean): Material {
   if (!isStandard(material)) return material;
   const { name } = material;
   material.roughness = ROUGHNESS[name] ?? material.roughness;
@@ -134,7 +134,7 @@ function surface(material: Material, ambience: Ambience, isPlain: boolean): Mate
   }
   if (name === "glass") material.depthWrite = false;
   const look = isPlain ? plain(material) : material;
-  dimBy(look, ambience);
+  if (ambience) dimBy(look, ambience);
   return look;
 }
 

@@ -1,0 +1,233 @@
+// The scene that is edited: every edit makes a new one, so that it can be undone.
+
+import { Changes } from "../show.ts";
+import { isSame, nameOf, type PlacedObject, type Ref, type SceneData, type Three, type Two } from "./scene.ts";
+import { FLOOR, pieceOf, radians, turned } from "./support.ts";
+
+const MOST_UNDONE = 200;
+const MOST_ID = 9999;
+
+/** To the centimetre and the degree: what a hand means. */
+export const cm = (value: number): number => Math.round(value * 100) / 100 + 0;
+
+/** The same direction between -180 and 180 degrees. */
+export const upright = (degrees: number): number => {
+  const turn = ((((degrees + 180) % 360) + 360) % 360) - 180;
+  return (turn === -180 ? 180 : turn) + 0;
+};
+
+export class Draft {
+  readonly changes = new Changes();
+  private past: SceneData[] = [];
+  private future: SceneData[] = [];
+  private lastKey = "";
+  private ref: Ref | null = null;
+
+  constructor(private now: SceneData) {}
+
+  get data(): SceneData {
+    return this.now;
+  }
+
+  get selected(): Ref | null {
+    return this.ref;
+  }
+
+  get canUndo(): boolean {
+    return this.past.length > 0;
+  }
+
+  get canRedo(): boolean {
+    return this.future.length > 0;
+  }
+
+  select(ref: Ref | null): void {
+    if (isSame(ref, this.ref)) return;
+    this.ref = ref && nameOf(this.now, ref) ? ref : null;
+    this.settle();
+    this.changes.tell();
+  }
+
+  /**
+   * Change the scene.
+   * @param key Edits of one key that follow each other are undone at once, e.g. those of one drag; empty for an edit of its own.
+   */
+  edit(change: (data: SceneData) => void, key = ""): void {
+    const next = structuredClone(this.now);
+    change(next);
+    if (JSON.stringify(next) === JSON.stringify(this.now)) return;
+    if (!key || key !== this.lastKey) this.past.push(this.now);
+    if (this.past.length > MOST_UNDONE) this.past.shift();
+    this.lastKey = key;
+    this.future = [];
+    this.become(next);
+  }
+
+  /** What comes now is an edit of its own, even if it has the same key. */
+  settle(): void {
+    this.lastKey = "";
+  }
+
+  undo(): void {
+    this.step(this.past, this.future);
+  }
+
+  redo(): void {
+    this.step(this.future, this.past);
+  }
+
+  private step(from: SceneData[], to: SceneData[]): void {
+    const next = from.pop();
+    if (!next) return;
+    to.push(this.now);
+    this.settle();
+    // Numbers in a list that becomes longer or shorter may stand for other things then.
+    if (this.ref && countOf(next, this.ref) !== countOf(this.now, this.ref)) this.ref = null;
+    this.become(next);
+  }
+
+  private become(next: SceneData): void {
+    this.now = next;
+    if (this.ref && !nameOf(next, this.ref)) this.ref = null;
+    this.changes.tell();
+  }
+
+  /** Put something at a place of the floor plane; what stands on furniture comes along. */
+  place(ref: Ref, [x, y]: Two, on = "", key = ""): void {
+    this.edit((data) => {
+      if (ref.kind === "agent") data.agent.position = [cm(x), cm(y)];
+      else if (ref.kind === "objects") {
+        const item = data.objects[ref.index];
+        if (item) Object.assign(item, { position: [cm(x), cm(y)], on: on || item.on });
+      } else if (ref.kind === "furniture") moveFurniture(data, ref.index, [cm(x), cm(y)]);
+      else if (ref.kind === "areas") moveArea(data, ref.index, [x, y]);
+      else {
+        const light = data.lights[ref.index];
+        if (light) light.position = [cm(x), cm(y), light.position[2]];
+      }
+    }, key);
+  }
+
+  /** Turn something by so many degrees, counter-clockwise as seen from above. */
+  turn(ref: Ref, degrees: number, key = ""): void {
+    this.edit((data) => {
+      if (ref.kind === "agent") turnAgent(data, degrees);
+      else if (ref.kind === "furniture") turnFurniture(data, ref.index, degrees);
+      else if (ref.kind === "objects") {
+        const item = data.objects[ref.index];
+        if (item) item.yaw_deg = upright(item.yaw_deg + degrees);
+      }
+    }, key);
+  }
+
+  /** Take something out. What stood on it comes to the floor; where she starts stays. */
+  remove(ref: Ref): void {
+    const name = nameOf(this.now, ref);
+    if (ref.kind === "agent" || !name) return;
+    this.ref = null;
+    const kind = ref.kind;
+    this.edit((data) => {
+      data[kind].splice(ref.index, 1);
+      if (kind !== "furniture") return;
+      for (const item of data.objects) if (pieceOf(item.on) === name) item.on = FLOOR;
+    });
+  }
+
+  addObject(asset: string, on: string, [x, y]: Two): void {
+    const id = freeId(this.now.objects);
+    this.add("objects", (data) => data.objects.push({ id, asset, on, position: [cm(x), cm(y)], yaw_deg: 0 }));
+  }
+
+  addFurniture(asset: string, [x, y]: Two): void {
+    const name = freeName(asset, [FLOOR, ...this.now.furniture.map((piece) => piece.name)]);
+    this.add("furniture", (data) => data.furniture.push({ name, asset, position: [cm(x), cm(y)], yaw_deg: 0 }));
+  }
+
+  addArea([x, y]: Two): void {
+    const name = freeName("area", this.now.areas.map((area) => area.name));
+    const corners: { min: Two; max: Two } = { min: [cm(x - 0.5), cm(y - 0.5)], max: [cm(x + 0.5), cm(y + 0.5)] };
+    this.add("areas", (data) => data.areas.push({ name, kind: "area", ...corners }));
+  }
+
+  private add(kind: "objects" | "furniture" | "areas", change: (data: SceneData) => void): void {
+    this.ref = { kind, index: this.now[kind].length };
+    this.edit(change);
+  }
+
+  /** Give furniture another name; what stands on it follows. */
+  rename(index: number, name: string): void {
+    this.edit((data) => {
+      const piece = data.furniture[index];
+      if (!piece) return;
+      const old = piece.name;
+      piece.name = name;
+      for (const item of data.objects) if (pieceOf(item.on) === old) item.on = item.on.replace(old, name);
+    }, `rename ${index}`);
+  }
+}
+
+/** Where something is on the floor plane; null if there is no such thing. */
+export function placeOf(data: SceneData, { kind, index }: Ref): Two | null {
+  if (kind === "agent") return data.agent.position;
+  if (kind === "areas") {
+    const area = data.areas[index];
+    return area ? [(area.min[0] + area.max[0]) / 2, (area.min[1] + area.max[1]) / 2] : null;
+  }
+  const at = data[kind][index]?.position;
+  return at ? [at[0], at[1]] : null;
+}
+
+const countOf = (data: SceneData, { kind }: Ref): number => (kind === "agent" ? 1 : data[kind].length);
+const ridersOf = (data: SceneData, name: string): PlacedObject[] => data.objects.filter(({ on }) => pieceOf(on) === name);
+
+function moveFurniture(data: SceneData, index: number, [x, y]: Two): void {
+  const piece = data.furniture[index];
+  if (!piece) return;
+  const [dx, dy] = [x - piece.position[0], y - piece.position[1]];
+  for (const rider of ridersOf(data, piece.name)) rider.position = [mm(rider.position[0] + dx), mm(rider.position[1] + dy)];
+  piece.position = [x, y];
+}
+
+function turnFurniture(data: SceneData, index: number, degrees: number): void {
+  const piece = data.furniture[index];
+  if (!piece) return;
+  const [px, py] = piece.position;
+  for (const rider of ridersOf(data, piece.name)) {
+    const [dx, dy] = turned([rider.position[0] - px, rider.position[1] - py], radians(degrees));
+    rider.position = [mm(px + dx), mm(py + dy)];
+    rider.yaw_deg = upright(rider.yaw_deg + degrees);
+  }
+  piece.yaw_deg = upright(piece.yaw_deg + degrees);
+}
+
+/** She looks elsewhere then, as far away as before. */
+function turnAgent(data: SceneData, degrees: number): void {
+  const { agent } = data;
+  const [x, y] = agent.position;
+  const [dx, dy] = turned([agent.gaze[0] - x, agent.gaze[1] - y], radians(degrees));
+  agent.gaze = [mm(x + dx), mm(y + dy), agent.gaze[2]] as Three;
+  agent.heading_deg = upright(agent.heading_deg + degrees);
+}
+
+function moveArea(data: SceneData, index: number, [x, y]: Two): void {
+  const area = data.areas[index];
+  if (!area) return;
+  const half: Two = [(area.max[0] - area.min[0]) / 2, (area.max[1] - area.min[1]) / 2];
+  area.min = [cm(x - half[0]), cm(y - half[1])];
+  area.max = [cm(x + half[0]), cm(y + half[1])];
+}
+
+const mm = (value: number): number => Math.round(value * 1000) / 1000 + 0;
+
+function freeId(objects: readonly PlacedObject[]): number {
+  const taken = new Set(objects.map(({ id }) => id));
+  let id = Math.max(-1, ...taken) + 1;
+  if (id > MOST_ID) for (id = 0; taken.has(id); ) id++;
+  return id;
+}
+
+function freeName(wish: string, taken: readonly string[]): string {
+  let name = wish;
+  for (let count = 2; taken.includes(name); count++) name = `${wish} ${count}`;
+  return name;
+}

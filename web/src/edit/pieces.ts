@@ -1,0 +1,118 @@
+// The meshes of a scene that is edited: furniture and objects from the catalog, areas, and where she starts.
+
+import {
+  BoxGeometry,
+  ConeGeometry,
+  CylinderGeometry,
+  DoubleSide,
+  EdgesGeometry,
+  FrontSide,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  type Material,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  type Object3D,
+  PlaneGeometry,
+} from "three";
+import { loadGltf, meshesIn, nodesByName } from "../view/loading.ts";
+import { looks } from "../view/room.ts";
+import { meshOfAsset } from "./remote.ts";
+import type { FloorArea, SceneData, Three } from "./scene.ts";
+
+const ACCENT = 0xf0976a;
+const WAITING = new MeshLambertMaterial({ color: 0x9a8d80, transparent: true, opacity: 0.45 });
+const AREA = new MeshBasicMaterial({ color: 0x3f86b8, transparent: true, opacity: 0.22, side: DoubleSide, depthWrite: false });
+const EDGE = new LineBasicMaterial({ color: 0x2f6f9f });
+const BODY = new MeshLambertMaterial({ color: ACCENT, transparent: true, opacity: 0.75 });
+const FLOOR_COLOUR = 0xb79a78;
+
+/** Loads each asset once; until it is there, a box of its size stands for it. */
+export class Assets {
+  private readonly made = new Map<string, Object3D>();
+  private readonly asked = new Set<string>();
+
+  constructor(private readonly arrived: () => void) {}
+
+  has(name: string): boolean {
+    return this.made.has(name);
+  }
+
+  /** A mesh of its own, with Z up and the asset's origin at zero. */
+  copy(name: string, size: Three, isOnFloor: boolean): Object3D {
+    const known = this.made.get(name);
+    if (known) return known.clone();
+    if (!this.asked.has(name)) void this.load(name);
+    const box = new Mesh(new BoxGeometry(...size), WAITING);
+    if (isOnFloor) box.position.z = size[2] / 2;
+    return new Group().add(box);
+  }
+
+  private async load(name: string): Promise<void> {
+    this.asked.add(name);
+    try {
+      const { scene } = await loadGltf(meshOfAsset(name));
+      scene.rotation.x = Math.PI / 2; // glTF has Y up.
+      for (const mesh of meshesIn(scene)) {
+        mesh.material = looks(mesh.material as Material, null, true);
+        mesh.castShadow = mesh.receiveShadow = true;
+      }
+      this.made.set(name, new Group().add(scene));
+      this.arrived();
+    } catch {
+      // The box goes on standing for it.
+    }
+  }
+}
+
+/** The walls as one sees them from inside and from above; a bare floor where they cannot be had. */
+export async function loadShell(url: string, room: SceneData["room"]): Promise<Object3D> {
+  try {
+    const nodes = nodesByName(await loadGltf(url));
+    const shell = nodes.get("room");
+    if (!shell) return bareFloor(room);
+    shell.removeFromParent();
+    for (const mesh of meshesIn(shell)) {
+      const look = looks(mesh.material as Material, null, true).clone();
+      look.side = FrontSide; // The near walls are looked through.
+      mesh.material = look;
+      mesh.visible = !["ceiling", "outside"].includes(look.name);
+      mesh.receiveShadow = true;
+    }
+    return shell;
+  } catch {
+    return bareFloor(room);
+  }
+}
+
+function bareFloor({ x_min, x_max, y_min, y_max }: SceneData["room"]): Object3D {
+  const floor = new Mesh(new PlaneGeometry(x_max - x_min, y_max - y_min), new MeshLambertMaterial({ color: FLOOR_COLOUR }));
+  floor.position.set((x_min + x_max) / 2, (y_min + y_max) / 2, 0);
+  floor.receiveShadow = true;
+  return floor;
+}
+
+export function areaMesh({ min, max }: FloorArea): Object3D {
+  const plane = new PlaneGeometry(Math.max(0.01, max[0] - min[0]), Math.max(0.01, max[1] - min[1]));
+  const group = new Group().add(new Mesh(plane, AREA), new LineSegments(new EdgesGeometry(plane), EDGE));
+  group.position.set((min[0] + max[0]) / 2, (min[1] + max[1]) / 2, 0.012);
+  return group;
+}
+
+/** A person in outline, looking along x. */
+export function startMesh(): Object3D {
+  const upright = (mesh: Mesh): Mesh => {
+    mesh.rotation.x = Math.PI / 2;
+    return mesh;
+  };
+  const body = upright(new Mesh(new CylinderGeometry(0.16, 0.22, 1.35, 20), BODY));
+  body.position.z = 0.675;
+  const head = upright(new Mesh(new CylinderGeometry(0.1, 0.1, 0.24, 20), BODY));
+  head.position.z = 1.5;
+  const nose = new Mesh(new ConeGeometry(0.1, 0.3, 16), BODY);
+  nose.rotation.z = -Math.PI / 2;
+  nose.position.set(0.34, 0, 0.1);
+  return new Group().add(body, head, nose);
+}
