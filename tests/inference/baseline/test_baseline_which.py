@@ -6,8 +6,11 @@ import pytest
 from tests.inference.baseline.meaning import parts, read
 from tests.inference.baseline.room import TextRoom
 
+from adamo_vh.geometry import Vec3
+from adamo_vh.inference.baseline.language.plan import Relation
 from adamo_vh.inference.baseline.language.requests import understand
 from adamo_vh.inference.baseline.mind.beliefs import told_by_text
+from adamo_vh.inference.baseline.mind.choosing import _from_there, thing_of
 from adamo_vh.inference.baseline.mind.memory import Memory
 from adamo_vh.inference.baseline.mind.notes import Entry, apply
 from adamo_vh.inference.baseline.sight.kinds import class_of
@@ -149,3 +152,12 @@ def test_distances_survive_a_note():
     memory = Memory()
     apply(Entry(1, items=["seen from m: 0 2.1, Plate_57 1.6"]), memory)
     assert memory.seen_m == {"0": 2.1, "Plate_57": 1.6}
+
+
+def test_what_stands_on_another_level_is_next_to_nothing() -> None:
+    plant = thing_of("IndoorPlant_50", Vec3(1.86, 2.74, 1.1), 9000.0)
+    above = thing_of("Flashlight_2", Vec3(1.81, 2.65, 1.75), 300.0)
+    beside = thing_of("Binoculars_21", Vec3(1.62, 2.66, 1.0), 900.0)
+    near = (Relation.NEAR, ("IndoorPlant",))
+    fits = [_from_there(near, thing, [plant, above, beside], None) for thing in (above, beside)]
+    assert fits[0] < 0.5 < fits[1]

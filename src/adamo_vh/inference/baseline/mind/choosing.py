@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.baseline.language.plan import Description, Goal, Relation, Size
-from adamo_vh.inference.baseline.mind.evidence import anchor_of, side_seen
+from adamo_vh.inference.baseline.mind.evidence import anchor_of, same_level, side_seen
 from adamo_vh.inference.baseline.mind.furniture import heights, may_be_found
 from adamo_vh.inference.baseline.mind.memory import Memory, Stand, Thing
 from adamo_vh.inference.baseline.mind.searching import Stage
@@ -356,6 +356,8 @@ def _from_there(
         for other in others
         if other.tag != thing.tag
         and class_of(other.tag) in classes
+        # What stands on another level is above or below, and next to nothing there.
+        and same_level(thing, other)
         and (relation is Relation.NEAR or side_seen(thing, other, viewer) is relation)
     ]
     nearest = min(near, default=math.inf)
