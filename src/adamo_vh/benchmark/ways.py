@@ -1,7 +1,8 @@
 """How far the oracle walks for a task, which is what an agent's way is measured against.
 
-Known for the built-in tasks in the built-in scenes as they are, where it was measured by
-`python tools/ways.py`; nothing is known of variations and of own scenes and tasks.
+Known for the built-in tasks in the built-in scenes and in the first twenty of their variations in
+each split, where it was measured by `python tools/ways.py`; nothing is known of other variations,
+own scenes and own tasks.
 """
 
 from __future__ import annotations
@@ -14,15 +15,14 @@ from typing import cast
 from adamo_vh.files import read_json
 
 TABLE = "ways.json"
-"""Beside this module: metres by scene and task."""
+"""Beside this module: metres by scene, variation and task."""
+Ways = Mapping[str, Mapping[str, Mapping[str, float]]]
 
 
 @cache
-def ways() -> Mapping[str, Mapping[str, float]]:
-    """All that is known: metres by scene and task."""
-    return cast(
-        Mapping[str, Mapping[str, float]], read_json(str(files("adamo_vh.benchmark") / TABLE))
-    )
+def ways() -> Ways:
+    """All that is known: metres by scene, number of the variation, and task."""
+    return cast(Ways, read_json(str(files("adamo_vh.benchmark") / TABLE)))
 
 
 def way_m(scene: str, variation: int, task: str | None) -> float | None:
@@ -30,7 +30,7 @@ def way_m(scene: str, variation: int, task: str | None) -> float | None:
 
     Args:
         scene: Its name or file.
-        variation: Of the scene.
+        variation: Of the scene; 0 is the scene as it stands.
         task: Id of a task; None for a free instruction.
     """
-    return None if variation or task is None else ways().get(scene, {}).get(task)
+    return None if task is None else ways().get(scene, {}).get(str(variation), {}).get(task)
