@@ -109,7 +109,7 @@ def test_any_study_is_a_task(tmp_path: Path) -> None:
 
     assert len(paper().dataset) == 15 * 2 * 2
     assert paper().epochs == 15
-    assert len(memory(tasks="T1,T8").dataset) == 2 * 4
+    assert len(memory(tasks="T1,T8").dataset) == 2 * 4 * 2  # k, and both ways of counting
     file = tmp_path / "mine.toml"
     file.write_text('tasks = ["T1"]\nvariations = "0-2"\nrepetitions = 2\n')
     mine = study(str(file))
