@@ -22,8 +22,9 @@ from adamo_vh.errors import FileError
 from adamo_vh.readable import encodable, readable
 
 CACHE_DIR = "ADAMO_VH_CACHE_DIR"
-DATA_DIR = "ADAMO_VH_DATA_DIR"
 """Environment variable: the folder of everything that can be made again."""
+DATA_DIR = "ADAMO_VH_DATA_DIR"
+"""Environment variable: the folder of what was fetched once."""
 
 _MAX_BYTES = 1_000_000
 _DEEPEST_TOML, _DEEPEST_JSON = 20, 60
@@ -334,19 +335,18 @@ def data_url(media_type: str, data: bytes) -> str:
 
 def cache_folder() -> Path:
     """The folder of everything that can be made again, for this user on this machine."""
-    given = os.environ.get(CACHE_DIR, "").strip()
-    if given:
-        return Path(given).expanduser()
-    import platformdirs
-
-    return Path(platformdirs.user_cache_dir("adamo-vh"))
+    return _own_folder(CACHE_DIR, "user_cache_dir")
 
 
 def data_folder() -> Path:
     """The folder of what was fetched once, for this user on this machine."""
-    given = os.environ.get(DATA_DIR, "").strip()
-    if given:
+    return _own_folder(DATA_DIR, "user_data_dir")
+
+
+def _own_folder(variable: str, usual: str) -> Path:
+    """The folder that a variable names, or else the usual one, by its name in platformdirs."""
+    if given := os.environ.get(variable, "").strip():
         return Path(given).expanduser()
     import platformdirs
 
-    return Path(platformdirs.user_data_dir("adamo-vh"))
+    return Path(getattr(platformdirs, usual)("adamo-vh"))

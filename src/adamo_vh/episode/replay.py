@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from adamo_vh.action import Code
 from adamo_vh.action_server import ActionServer, execute_call
 from adamo_vh.engine import World
 from adamo_vh.errors import RecordError
@@ -73,7 +72,7 @@ def replay(
             # A further instruction begins where it stands; free play may have gone back before.
             server.load(event.saved)
         if isinstance(event, Acted | Happened | Restored):
-            is_cut = isinstance(event, Acted) and event.feedback.code == Code.CANCELLED
+            is_cut = isinstance(event, Acted) and event.is_cut
             cut += is_cut
             digest, frame = _led_to(event, server, world, is_cut=is_cut)
             if digest != event.state_hash:

@@ -94,6 +94,11 @@ class Acted:
     world_s: float
     type: Literal["acted"] = "acted"
 
+    @property
+    def is_cut(self) -> bool:
+        """Whether a person cut it short, at a moment that no execution brings about again."""
+        return self.feedback.code == Code.CANCELLED
+
 
 @dataclass(frozen=True, slots=True)
 class Ended:
@@ -265,7 +270,7 @@ def _is_by_hand(event: Event) -> bool:
         case Happened():
             return event.by_user
         case Acted():
-            return event.feedback.code == Code.CANCELLED
+            return event.is_cut
         case Ended():
             return event.reason is TerminationReason.STOPPED
     return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 
-from adamo_vh.action import Action, Code
+from adamo_vh.action import Action
 from adamo_vh.action_server import ActionResult, ActionServer, Sighting
 from adamo_vh.errors import InvalidActionError
 from adamo_vh.record.trajectory import Acted, Event, Observed
@@ -45,7 +45,7 @@ class CutShort:
     def execute(self, action: Action) -> ActionResult:
         """Carry out an action, or go to where it was cut."""
         act, has_view = self._ahead.popleft() if self._ahead else (None, False)
-        if act is None or act.feedback.code != Code.CANCELLED:
+        if act is None or not act.is_cut:
             return self._server.execute(action)
         state_hash = self._server.load(act.saved)
         view = self._server.observe().observation if has_view else None
@@ -68,5 +68,5 @@ class CutShort:
 
 def as_recorded(server: ActionServer, known: Sequence[Event]) -> ActionServer:
     """The server for executing a record again; itself, where nothing was cut short."""
-    cut = any(isinstance(e, Acted) and e.feedback.code == Code.CANCELLED for e in known)
+    cut = any(isinstance(e, Acted) and e.is_cut for e in known)
     return CutShort(server, known) if cut else server

@@ -16,8 +16,6 @@ from adamo_vh.record.run_folder import FRAMES
 from adamo_vh.record.trajectory import Observed, Shown, Trajectory, frame_type, read_trajectory
 from adamo_vh.study.store import EPISODES, episode_folder, is_study, read_outcomes
 
-"""A recorded name must not lead out of the folder."""
-
 
 @dataclass(frozen=True, slots=True)
 class Episode:
