@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 import secrets
-import signal
 import sys
-import threading
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from adamo_vh.cli.episode import RUNS
+from adamo_vh.cli.listening import told_to_stop
 from adamo_vh.extras import extra
 from adamo_vh.readable import readable
 from adamo_vh.record.run_folder import reserve
@@ -51,7 +50,7 @@ def serve(
             with serve_http(server, http, token=token) as url:
                 _tell(f"MCP at {url}; {_what(offer)}")
                 _tell("stop   Ctrl+C")
-                _wait()
+                told_to_stop().wait()
 
 
 def _offer(out: Path | None, settings: dict[str, Any], most: int, idle_s: float) -> Offer:
@@ -75,11 +74,3 @@ def _what(offer: Offer) -> str:
 def _tell(line: str) -> None:
     """Tell who runs the server: beside the standard output, which may be the wire."""
     print(readable(line, lines=True), file=sys.stderr, flush=True)
-
-
-def _wait() -> None:
-    stop = threading.Event()
-    # Set anew because a shell may have told its background jobs to ignore Ctrl+C.
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
-    stop.wait()

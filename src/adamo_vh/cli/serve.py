@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 import os
-import secrets
-import signal
-import threading
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from adamo_vh.cli.episode import RUNS
+from adamo_vh.cli.listening import NEW, key_of, names_of, told_to_stop
 from adamo_vh.cli.terminal import say
 from adamo_vh.errors import ConfigError
 from adamo_vh.extras import extra
 from adamo_vh.serving.admission import Rules
-from adamo_vh.serving.loopback import is_loopback
-
-NEW = "new"
-"""In place of a token: one is made up, and told once."""
-_SHORTEST = 12
-"""Letters of a token that keeps others out."""
 
 
 def serve(
@@ -58,13 +50,11 @@ def serve(
     from adamo_vh.service.hosting import Host, Terms
 
     player_key, judge_key = key_of(token, "--token"), key_of(judge, "--judge")
-    own = () if is_loopback(address) or address in ("0.0.0.0", "::") else (address,)
-    rules = Rules(MAX_BODY_BYTES, token=player_key, judge_token=judge_key, hosts=(*own, *hosts))
+    rules = Rules(
+        MAX_BODY_BYTES, token=player_key, judge_token=judge_key, hosts=names_of(address, hosts)
+    )
     folder = out or RUNS / f"served-{datetime.now(UTC):%Y%m%d-%H%M%S}"
-    stop = threading.Event()
-    # Set anew because a shell may have told its background jobs to ignore Ctrl+C.
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = told_to_stop()
     faces, engines = FACES, None
     if is_remote := _is_remote(engine):
         page = page_folder(os.environ.get(PAGE, ""))
@@ -103,19 +93,3 @@ def _is_remote(engine: str) -> bool:
     if engine not in ("built-in", "remote"):
         raise ConfigError(f"--engine {engine}: use built-in or remote.")
     return engine == "remote"
-
-
-def key_of(told: str, option: str) -> str:
-    """A token: as it is told, or made up.
-
-    Raises:
-        ConfigError: It is too short to keep anybody out.
-    """
-    if told == NEW:
-        return secrets.token_urlsafe(24)
-    if told and (len(told) < _SHORTEST or not told.isascii() or not told.isprintable()):
-        raise ConfigError(
-            f"{option}: use at least {_SHORTEST} letters, digits and signs; or {NEW}, to have one "
-            "made up."
-        )
-    return told

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import signal
-import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from adamo_vh.cli.listening import told_to_stop
 from adamo_vh.cli.terminal import say
 from adamo_vh.model_server.model_serving import serve_model
 
@@ -20,10 +19,7 @@ def serve(model: str, host: str, port: int, faults: Path | None, *, tools: bool)
     Raises:
         ConfigError: A setting is wrong or the port is taken.
     """
-    stop = threading.Event()
-    # Set anew because a shell may have told its background jobs to ignore Ctrl+C.
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = told_to_stop()
     with serve_model(model, port, host=host, tools=tools, faults=faults, watch=_tell) as served:
         say(f"{served.name} at {served.base_url}")
         say(f"try    adamo-vh run --task T1 --model {served.uri}")

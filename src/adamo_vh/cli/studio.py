@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import threading
 import webbrowser
 from collections.abc import Sequence
@@ -13,13 +12,12 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from adamo_vh.cli.episode import RUNS
-from adamo_vh.cli.serve import NEW, key_of
+from adamo_vh.cli.listening import NEW, key_of, names_of, told_to_stop
 from adamo_vh.cli.terminal import say
 from adamo_vh.errors import ConfigError
 from adamo_vh.extras import extra
 from adamo_vh.record.run_folder import EVENTS, MANIFEST
 from adamo_vh.serving.admission import Rules
-from adamo_vh.serving.loopback import is_loopback
 from adamo_vh.study.store import is_study
 
 if TYPE_CHECKING:
@@ -78,12 +76,11 @@ def studio(
     for folder in runs:
         _check(folder)
     key = key_of(token, "--token")
-    own = () if is_loopback(address) or address in ("0.0.0.0", "::") else (address,)
     rules = Rules(
         MAX_BODY_BYTES,
         content_types=CONTENT_TYPES,
         token=key,
-        hosts=(*own, *hosts),
+        hosts=names_of(address, hosts),
         browsed=AT,
     )
     parent = out or RUNS
@@ -92,9 +89,7 @@ def studio(
     editor = Editor(parent / "scenes", offer)
     library = Library([*(runs or ()), parent])
     shown = Studio(offer, library, rooms, Meshes(), editor, _talk(ears, voice))
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = told_to_stop()
     host = Host(parent / f"served-{datetime.now(UTC):%Y%m%d-%H%M%S}", Terms())
     faces = (*FACES, studio_face(shown))
     try:
