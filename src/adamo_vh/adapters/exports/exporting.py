@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import cast
@@ -45,7 +46,7 @@ def export(
     *,
     choice: Choice | None = None,
     form: Form | None = None,
-    write: Write | None = None,
+    others: Mapping[str, Callable[[], Write]] | None = None,
 ) -> Exported:
     """Write recorded episodes in the format of another tool; the folder appears when all is there.
 
@@ -55,7 +56,7 @@ def export(
         out: A new folder.
         choice: Which episodes are wanted; all by default.
         form: How they are written.
-        write: Writes a format that is none of these, whatever it is called.
+        others: Further formats by name, each with what loads its writer.
 
     Raises:
         ConfigError: The format is unknown, lacks its extra, or the folder is in use.
@@ -63,18 +64,23 @@ def export(
         FileError: The folder cannot be written.
     """
     folder = Path(out)
-    if write is None and to.lower() not in FORMATS:
-        raise ConfigError(f"There is no format {to!r}. Use one of {', '.join(FORMATS)}.")
+    loads: dict[str, Callable[[], Write]] = {name: partial(_writer, name) for name in FORMATS}
+    loads.update(others or {})
+    if to.lower() not in loads:
+        raise ConfigError(f"There is no format {to!r}. Use one of {', '.join(loads)}.")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ConfigError(f"{folder} already holds something; name a new folder for the export.")
-    if write is None:
-        module, name = FORMATS[to.lower()].split(".")
-        write = cast(Write, getattr(import_module(f"{__package__}.{module}"), name))
+    write, told = loads[to.lower()](), form or Form()
     problems: list[str] = []
     episodes = recorded(map(Path, runs), choice, problems)
-    writes, told = write, form or Form()
-    count = _whole(folder, lambda half: writes(episodes, half, told))
+    count = _whole(folder, lambda half: write(episodes, half, told))
     return Exported(folder, count, tuple(problems))
+
+
+def _writer(to: str) -> Write:
+    """What writes one of the formats."""
+    module, name = FORMATS[to].split(".")
+    return cast(Write, getattr(import_module(f"{__package__}.{module}"), name))
 
 
 def _whole(folder: Path, write: Callable[[Path], int]) -> int:
