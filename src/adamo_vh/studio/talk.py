@@ -7,7 +7,7 @@ import secrets
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, Generic, TypeVar
 
 from fastapi import APIRouter, Body, Request, Response
 
@@ -21,6 +21,40 @@ MOST_WAV_BYTES = 8_000_000
 """Forty seconds at 96,000 samples a second, or four minutes as speech is sent."""
 _KEPT = 16
 """Utterances whose sound can still be fetched."""
+
+
+_NO_EARS = "This studio does not hear: adamo-vh speech fetch tiny.en, then start it again."
+_NO_VOICE = (
+    "This studio does not speak: adamo-vh speech fetch en_US-ljspeech-medium, then start it again."
+)
+_T = TypeVar("_T")
+
+
+class _Loaded(Generic[_T]):
+    """Something that takes long to load: once, when it is needed first."""
+
+    def __init__(self, make: Callable[[], _T] | None, lacking: str) -> None:
+        self._make, self._lacking = make, lacking
+        self._made: _T | None = None
+        self._lock = threading.Lock()
+
+    @property
+    def is_there(self) -> bool:
+        """Whether it can be had."""
+        return self._make is not None
+
+    def get(self) -> _T:
+        """It.
+
+        Raises:
+            ConfigError: There is none, or it cannot be loaded.
+        """
+        if self._make is None:
+            raise ConfigError(self._lacking)
+        with self._lock:
+            if self._made is None:
+                self._made = self._make()
+            return self._made
 
 
 class Talk:
@@ -37,51 +71,21 @@ class Talk:
             ears: Makes what hears; nobody is heard without.
             voice: Makes what speaks; nobody speaks without.
         """
-        self._make_ears, self._make_voice = ears, voice
-        self._ears: Recognizer | None = None
-        self._voice: Voice | None = None
+        self._ears = _Loaded(ears, _NO_EARS)
+        self._voice = _Loaded(voice, _NO_VOICE)
         self._said: OrderedDict[str, Spoken] = OrderedDict()
         self._lock = threading.Lock()
 
     def told(self) -> dict[str, bool]:
         """What can be done, for the page."""
-        return {"hears": self._make_ears is not None, "speaks": self._make_voice is not None}
+        return {"hears": self._ears.is_there, "speaks": self._voice.is_there}
 
     def warm(self) -> None:
         """Load what there is, so that the first word is not waited for."""
-        if self._make_ears is not None:
-            self.ears()
-        if self._make_voice is not None:
-            self.voice()
-
-    def ears(self) -> Recognizer:
-        """What hears.
-
-        Raises:
-            ConfigError: There are no ears, or they cannot be loaded.
-        """
-        if self._make_ears is None:
-            raise ConfigError(
-                "This studio does not hear: adamo-vh speech fetch tiny.en, then start it again."
-            )
-        with self._lock:
-            self._ears = self._ears or self._make_ears()
-            return self._ears
-
-    def voice(self) -> Voice:
-        """What speaks.
-
-        Raises:
-            ConfigError: There is no voice, or it cannot be loaded.
-        """
-        if self._make_voice is None:
-            raise ConfigError(
-                "This studio does not speak: adamo-vh speech fetch en_US-ljspeech-medium, then "
-                "start it again."
-            )
-        with self._lock:
-            self._voice = self._voice or self._make_voice()
-            return self._voice
+        if self._ears.is_there:
+            self._ears.get()
+        if self._voice.is_there:
+            self._voice.get()
 
     def hear(self, wav: bytes) -> Heard:
         """What is said in a WAV file.
@@ -89,7 +93,7 @@ class Talk:
         Raises:
             ConfigError: It is none, or nobody can hear here.
         """
-        return self.ears().hear(Sound.of_wav(wav))
+        return self._ears.get().hear(Sound.of_wav(wav))
 
     def speak(self, text: str) -> tuple[str, Spoken]:
         """Say a text; its sound can be fetched by the name for a while.
@@ -97,7 +101,7 @@ class Talk:
         Raises:
             ConfigError: There is nothing to say, or nobody can speak here.
         """
-        spoken, name = self.voice().speak(text), secrets.token_urlsafe(12)
+        spoken, name = self._voice.get().speak(text), secrets.token_urlsafe(12)
         with self._lock:
             self._said[name] = spoken
             while len(self._said) > _KEPT:
