@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +57,7 @@ class Atlas:
 def key(material: Material) -> str:
     """What two materials must share to share a place on the sheet."""
     picture = PLAIN if material.texture is None else material.texture
-    return f"{picture.shape} {hash(picture.tobytes())} {roughness(material)}"
+    return f"{picture.shape} {sha256(picture.tobytes()).hexdigest()} {roughness(material)}"
 
 
 def roughness(material: Material) -> float:
