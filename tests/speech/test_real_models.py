@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
-from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.programs import need
 
 from adamo_vh.speech.hearing import Recognizer
 from adamo_vh.speech.models import recognizer, voice
@@ -37,11 +35,7 @@ def ears() -> Recognizer:
 @pytest.fixture(scope="module", autouse=True)
 def programs() -> None:
     """The programs that the voices need, after an attempt to install them."""
-    if not (shutil.which("espeak-ng") and shutil.which("flite")):
-        with suppress(OSError, subprocess.SubprocessError):
-            subprocess.run(["apt-get", "update", "-qq"], check=False, timeout=300)
-            command = ["apt-get", "install", "-qq", "-y", "--no-install-recommends"]
-            subprocess.run([*command, "espeak-ng", "flite"], check=False, timeout=600)
+    need(["espeak-ng", "flite"], ["espeak-ng", "flite"])
 
 
 def words(text: str) -> list[str]:

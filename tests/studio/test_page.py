@@ -9,11 +9,12 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.programs import need
 
 import adamo_vh
 from adamo_vh.inference.messages import AIMessage, ToolCall
@@ -22,7 +23,6 @@ from adamo_vh.inference.players.scripted import ScriptedModel
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "web"
 BUILT = ROOT / "src" / "adamo_vh" / "studio" / "page"
-PACKAGES = ["chromium", "nodejs", "npm"]
 EVIL = "<img src=x onerror=alert(1)><script>alert(1)</script><b><b>bold"
 
 
@@ -65,17 +65,6 @@ def test_a_file_of_the_page_can_be_read_in_one_sitting() -> None:
     assert {name: length for name, length in lengths.items() if length > 300} == {}
 
 
-def lacking() -> list[str]:
-    """The programs that are not there, after an attempt to install them."""
-    programs = ["chromium", "node", "npm"]
-    if not all(map(shutil.which, programs)):
-        with suppress(OSError, subprocess.SubprocessError):
-            subprocess.run(["apt-get", "update", "-qq"], check=False, timeout=300)
-            command = ["apt-get", "install", "-qq", "-y", "--no-install-recommends", *PACKAGES]
-            subprocess.run(command, check=False, timeout=900, stdout=subprocess.DEVNULL)
-    return [program for program in programs if not shutil.which(program)]
-
-
 def npm(folder: Path, *words: str, **settings: str) -> None:
     done = subprocess.run(
         ["npm", *words],
@@ -92,8 +81,7 @@ def npm(folder: Path, *words: str, **settings: str) -> None:
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the page's source with its libraries."""
-    if missing := lacking():
-        pytest.fail(f"{', '.join(missing)} is missing: apt-get install {' '.join(PACKAGES)}")
+    need(["chromium", "node", "npm"], ["chromium", "nodejs", "npm"])
     folder: Path = tmp_path_factory.mktemp("page") / "web"
     shutil.copytree(SOURCE, folder, ignore=shutil.ignore_patterns("node_modules", "test-results"))
     npm(folder, "ci", "--no-audit", "--no-fund")
@@ -164,9 +152,7 @@ def test_she_is_spoken_with(source: Path, runs: Path, tmp_path: Path) -> None:
     from adamo_vh.speech.models import voice
     from adamo_vh.speech.sound import Sound
 
-    if not shutil.which("flite"):
-        command = ["apt-get", "install", "-qq", "-y", "--no-install-recommends", "flite"]
-        subprocess.run(command, check=False, timeout=600, stdout=subprocess.DEVNULL)
+    need(["flite"], ["flite"])
     said = voice("flite").speak("Put the plate on the floor.").sound.at(48_000)
     quiet = [np.zeros(48_000 * seconds, np.float32) for seconds in (2, 60)]
     spoken = Sound(np.concatenate([quiet[0], 0.8 * said.samples, quiet[1]]), 48_000)

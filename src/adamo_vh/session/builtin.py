@@ -86,7 +86,7 @@ def inspect_scene_file(file: str) -> SceneReport:
     from adamo_vh.runtime.builtin import BuiltinEngine
     from adamo_vh.runtime.inspection.arrangement import inspect_arrangement
     from adamo_vh.runtime.inspection.checks import inspect_scene
-    from adamo_vh.runtime.inspection.finding import bounded, error
+    from adamo_vh.runtime.inspection.finding import faults_of
     from adamo_vh.runtime.scenes import load_scene
 
     try:
@@ -98,8 +98,7 @@ def inspect_scene_file(file: str) -> SceneReport:
     except SceneError as fault:
         if not Path(file).is_file():
             raise
-        found = (error(where, problem, "", blocks=True) for where, problem in fault.faults)
-        return SceneReport(Path(file).stem, tuple(bounded(found)), {})
+        return SceneReport(Path(file).stem, faults_of(fault), {})
     try:
         findings = inspect_scene(scene, engine)
         return SceneReport(scene.name, findings, _pictures(scene, engine, ("top", "start")))

@@ -59,14 +59,13 @@ def examine(told: str | Mapping[str, Any]) -> Examined:
         told: TOML, or the same as data.
     """
     from adamo_vh.runtime.inspection.arrangement import inspect_arrangement
-    from adamo_vh.runtime.inspection.finding import bounded, error
+    from adamo_vh.runtime.inspection.finding import faults_of
     from adamo_vh.runtime.scenes.scene import parse_scene, scene_from
 
     try:
         scene = parse_scene(told, DRAFT) if isinstance(told, str) else scene_from(told, DRAFT)
     except SceneError as fault:
-        found = (error(where, problem, "", blocks=True) for where, problem in fault.faults)
-        return Examined(None, tuple(bounded(found)))
+        return Examined(None, faults_of(fault))
     return Examined(scene, inspect_arrangement(scene))
 
 

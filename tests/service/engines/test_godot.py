@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import socket
 import subprocess
 from collections.abc import Iterator
@@ -11,6 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
+from tests.programs import need
 
 import adamo_vh
 from adamo_vh.benchmark.tasks import task
@@ -29,21 +29,9 @@ SCREEN = ["xvfb-run", "-a", "-s", "-screen 0 1280x720x24 +extension GLX"]
 GODOT = ["godot3-runner", "--path", str(PROJECT), "--video-driver", "GLES3"]
 
 
-def installed() -> bool:
-    """Whether Godot is there, after an attempt to install it."""
-    if not (shutil.which("godot3-runner") and shutil.which("xvfb-run")):
-        with suppress(OSError, subprocess.SubprocessError):
-            packages = ["godot3-runner", "xvfb", "xauth"]
-            subprocess.run(["apt-get", "update", "-qq"], check=False, timeout=300)
-            command = ["apt-get", "install", "-qq", "-y", "--no-install-recommends", *packages]
-            subprocess.run(command, check=False, timeout=600, stdout=subprocess.DEVNULL)
-    return bool(shutil.which("godot3-runner") and shutil.which("xvfb-run"))
-
-
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if not installed():
-        pytest.fail("Godot is missing: apt-get install godot3-runner xvfb xauth")
+    need(["godot3-runner", "xvfb-run"], ["godot3-runner", "xvfb", "xauth"])
     folder = tmp_path_factory.mktemp("scenes")
     for name in ("s1", "s2"):
         export(name, 0, folder / name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from tests.dialled import open_door
+from tests.programs import need
 
 from adamo_vh.errors import EngineError
 from adamo_vh.geometry import Vec3
@@ -25,9 +25,7 @@ FOLDER = Path(__file__).resolve().parents[3] / "engines" / "unity"
 @pytest.fixture(scope="module")
 def stub(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The compiled console program."""
-    if shutil.which("mcs") is None:
-        ask = ["apt-get", "install", "-y", "--no-install-recommends", "mono-mcs", "mono-runtime"]
-        subprocess.run([*ask, "libmono-system4.0-cil"], check=True, capture_output=True)
+    need(["mcs", "mono"], ["mono-mcs", "mono-runtime", "libmono-system4.0-cil"])
     program = tmp_path_factory.mktemp("csharp") / "stub.exe"
     files = sorted(str(path) for path in FOLDER.glob("*/*.cs"))
     order = ["mcs", "-langversion:7", "-warnaserror", f"-out:{program}", *files]

@@ -5,11 +5,12 @@ from __future__ import annotations
 import shutil
 import subprocess
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from tests.dialled import open_door
+from tests.programs import need
 
 import adamo_vh
 from adamo_vh.benchmark.tasks import task
@@ -25,25 +26,12 @@ pytestmark = pytest.mark.extras
 SOURCE = Path(__file__).resolve().parents[3] / "engines" / "web"
 CHROMIUM = ["chromium", "--headless=new", "--no-sandbox", "--no-first-run"]
 SOFTWARE = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-PACKAGES = ["chromium", "nodejs", "npm"]
-
-
-def lacking() -> list[str]:
-    """The programs that are not there, after an attempt to install them."""
-    programs = ["chromium", "node", "npm"]
-    if not all(map(shutil.which, programs)):
-        with suppress(OSError, subprocess.SubprocessError):
-            subprocess.run(["apt-get", "update", "-qq"], check=False, timeout=300)
-            command = ["apt-get", "install", "-qq", "-y", "--no-install-recommends", *PACKAGES]
-            subprocess.run(command, check=False, timeout=900, stdout=subprocess.DEVNULL)
-    return [program for program in programs if not shutil.which(program)]
 
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the page's source with its libraries."""
-    if missing := lacking():
-        pytest.fail(f"{', '.join(missing)} is missing: apt-get install {' '.join(PACKAGES)}")
+    need(["chromium", "node", "npm"], ["chromium", "nodejs", "npm"])
     folder = tmp_path_factory.mktemp("web") / "web"
     shutil.copytree(SOURCE, folder, ignore=shutil.ignore_patterns("node_modules", "dist"))
     npm(folder, "ci", "--no-audit", "--no-fund")

@@ -57,7 +57,12 @@ class Atlas:
 def key(material: Material) -> str:
     """What two materials must share to share a place on the sheet."""
     picture = PLAIN if material.texture is None else material.texture
-    return f"{picture.shape} {sha256(picture.tobytes()).hexdigest()} {roughness(material)}"
+    return f"{picture_key(picture)} {roughness(material)}"
+
+
+def picture_key(picture: Pixels) -> str:
+    """Tells pictures apart by their content."""
+    return f"{picture.shape} {sha256(picture.tobytes()).hexdigest()}"
 
 
 def roughness(material: Material) -> float:

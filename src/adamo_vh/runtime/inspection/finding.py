@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
+from adamo_vh.errors import SceneError
+
 _MOST_OF_A_KIND = 20
 
 
@@ -37,6 +39,12 @@ def error(where: str, problem: str, fix: str, *, blocks: bool = False) -> SceneF
 def warning(where: str, problem: str, fix: str) -> SceneFinding:
     """Something that is probably not meant."""
     return SceneFinding(Severity.WARNING, where, problem, fix)
+
+
+def faults_of(fault: SceneError) -> tuple[SceneFinding, ...]:
+    """What is wrong with a scene that cannot be read, as findings."""
+    found = (error(where, problem, "", blocks=True) for where, problem in fault.faults)
+    return tuple(bounded(found))
 
 
 def bounded(findings: Iterable[SceneFinding]) -> Iterator[SceneFinding]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from adamo_vh.engine import ObjectState
 from adamo_vh.geometry import Quaternion
 from adamo_vh.runtime.assets.asset import Asset, Material, Part
-from adamo_vh.runtime.assets.atlas import Atlas, key, packed, roughness
+from adamo_vh.runtime.assets.atlas import Atlas, key, packed, picture_key, roughness
 from adamo_vh.runtime.assets.glb_writing import (
     BYTE,
     FLOAT,
@@ -228,7 +228,7 @@ class _Meshes:
 def _picture(part: Part) -> str:
     """A part's picture, by its content; empty for none."""
     texture = part.material.texture
-    return "" if texture is None else f"{texture.shape} {hash(texture.tobytes())}"
+    return "" if texture is None else picture_key(texture)
 
 
 def _downward(uvs: NDArray[np.float32]) -> NDArray[np.float32]:
