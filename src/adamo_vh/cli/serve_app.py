@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from adamo_vh.cli.listen_options import Address, AllowedHosts
 from adamo_vh.serving.admission import JUDGE_VARIABLE, TOKEN_VARIABLE
 
 serve_app = typer.Typer()
@@ -23,9 +24,7 @@ def serve(
     ] = "built-in",
     profile: Annotated[str, typer.Option(help="Of sessions that name none.")] = "paper",
     resolution: Annotated[str, typer.Option(help="Frame size, WIDTHxHEIGHT.")] = "1920x1080",
-    host: Annotated[
-        str, typer.Option(help="Where to listen; others than this machine need --token.")
-    ] = "127.0.0.1",
+    host: Address = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port; 0 for a free one.")] = 8000,
     token: Annotated[
         str,
@@ -38,10 +37,7 @@ def serve(
             envvar=JUDGE_VARIABLE,
         ),
     ] = "",
-    allow_host: Annotated[
-        list[str] | None,
-        typer.Option(help="One more name under which this machine is asked; may be repeated."),
-    ] = None,
+    allow_host: AllowedHosts = None,
     sessions: Annotated[int, typer.Option(help="So many are played at once.", min=1)] = 16,
     idle: Annotated[
         float, typer.Option(help="Seconds after which an unused session is closed.", min=1)

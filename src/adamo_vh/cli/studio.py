@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import threading
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import quote
 
 from adamo_vh.cli.episode import RUNS
@@ -23,6 +23,7 @@ from adamo_vh.study.store import is_study
 if TYPE_CHECKING:
     from adamo_vh.studio.talk import Talk
 
+_T = TypeVar("_T")
 NONE = "none"
 """In place of ears or a voice: there are none."""
 
@@ -121,14 +122,20 @@ def _talk(ears: str, voice: str) -> Talk:
     from adamo_vh.studio.talk import Talk
 
     here = {model.kind: model.name for model in reversed(MODELS) if model.is_here}
-    hears_by = ears or (here.get("hears", NONE) if find_spec("faster_whisper") else NONE)
-    says_by = voice or (here.get("speaks", NONE) if find_spec("pipersynth") else NONE)
-    heard = recognizer(hears_by) if ears and hears_by != NONE else None
-    spoken = speaks(says_by) if voice and says_by != NONE else None
-    return Talk(
-        None if hears_by == NONE else lambda: heard or recognizer(hears_by),
-        None if says_by == NONE else lambda: spoken or speaks(says_by),
-    )
+    hears_by = here.get("hears", NONE) if find_spec("faster_whisper") else NONE
+    says_by = here.get("speaks", NONE) if find_spec("pipersynth") else NONE
+    return Talk(_loader(ears, hears_by, recognizer), _loader(voice, says_by, speaks))
+
+
+def _loader(named: str, fetched: str, load: Callable[[str], _T]) -> Callable[[], _T] | None:
+    """Loads what was named, now, or what was fetched, later; None if there is nothing to load."""
+    name = named or fetched
+    if name == NONE:
+        return None
+    if named:
+        loaded = load(name)
+        return lambda: loaded
+    return lambda: load(name)
 
 
 def _check(folder: Path) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from adamo_vh.cli.listen_options import Address, AllowedHosts
 from adamo_vh.serving.admission import TOKEN_VARIABLE
 
 studio_app = typer.Typer()
@@ -31,17 +32,12 @@ def studio(
     resolution: Annotated[
         str, typer.Option(help="Size of the frames that a mind is shown, WIDTHxHEIGHT.")
     ] = "1920x1080",
-    host: Annotated[
-        str, typer.Option(help="Where to listen; others than this machine need --token.")
-    ] = "127.0.0.1",
+    host: Address = "127.0.0.1",
     token: Annotated[
         str,
         typer.Option(help="What visitors must bring; new to make one up.", envvar=TOKEN_VARIABLE),
     ] = "",
-    allow_host: Annotated[
-        list[str] | None,
-        typer.Option(help="One more name under which this machine is asked; may be repeated."),
-    ] = None,
+    allow_host: AllowedHosts = None,
     ears: Annotated[
         str,
         typer.Option(
