@@ -1,4 +1,5 @@
 import { defineConfig } from "@playwright/test";
+import { CHROMIUM, SOFTWARE } from "./page-tests/chromium.ts";
 
 // STUDIO_URL is the address of a running studio, with the slash at its end; see tests/studio/test_page.py.
 export default defineConfig({
@@ -13,14 +14,8 @@ export default defineConfig({
     baseURL: process.env.STUDIO_URL,
     viewport: { width: 1440, height: 900 },
     launchOptions: {
-      executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-      args: [
-        "--no-sandbox",
-        "--use-gl=angle",
-        "--use-angle=swiftshader",
-        "--enable-unsafe-swiftshader",
-        "--ignore-gpu-blocklist",
-      ],
+      executablePath: CHROMIUM,
+      args: SOFTWARE,
     },
   },
 });

@@ -1,6 +1,7 @@
 // Needs a studio with ears and a voice, and MIC=FILE.wav with a sentence that the browser takes for its microphone.
 
 import { chromium, expect, test } from "@playwright/test";
+import { CHROMIUM, SOFTWARE } from "./chromium.ts";
 
 const MIC = process.env.MIC ?? "";
 const STUDIO = process.env.STUDIO_URL ?? "";
@@ -8,12 +9,9 @@ const STUDIO = process.env.STUDIO_URL ?? "";
 test("what is said into the microphone is done, and she says so", async () => {
   test.skip(!MIC, "no sound to say");
   const browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    executablePath: CHROMIUM,
     args: [
-      "--no-sandbox",
-      "--use-gl=angle",
-      "--use-angle=swiftshader",
-      "--enable-unsafe-swiftshader",
+      ...SOFTWARE,
       "--use-fake-ui-for-media-stream",
       "--use-fake-device-for-media-stream",
       `--use-file-for-fake-audio-capture=${MIC}%noloop`,

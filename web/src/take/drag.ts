@@ -74,10 +74,6 @@ export class Drag {
     this.show.say({ type: "move", object_id: this.id, point: rounded });
     this.point = null;
   }
-
-  get isActive(): boolean {
-    return this.ghost !== null;
-  }
 }
 
 function ghostOf(thing: Object3D, look: MeshBasicMaterial): Group {

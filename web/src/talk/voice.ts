@@ -110,10 +110,6 @@ export class Voice {
     private readonly failed: (why: string) => void,
   ) {}
 
-  get speaks(): boolean {
-    return this.audio !== null;
-  }
-
   say(text: string): void {
     this.waiting.push(text);
     if (this.waiting.length === 1) void this.next(this.turn);

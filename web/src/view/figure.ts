@@ -20,7 +20,6 @@ export class Figure {
   private readonly headMeshes: Object3D[];
   private readonly feet: Bone[];
   private readonly lids: number;
-  private readonly hand: Bone | undefined;
 
   private constructor(
     private readonly root: Object3D,
@@ -35,7 +34,6 @@ export class Figure {
     this.face = new Face(this.meshes.filter((mesh) => mesh.morphTargetDictionary));
     this.lids = bones.indexOf(byName.get("eyelids"));
     this.head = byName.get("head");
-    this.hand = byName.get("hand_r");
     this.feet = ["foot_l", "foot_r"].map((name) => byName.get(name)).filter((bone) => bone !== undefined);
     for (const mesh of this.meshes) {
       mesh.frustumCulled = false;
@@ -88,10 +86,6 @@ export class Figure {
   /** Top of the head. */
   crown(): Vector3 {
     return new Vector3(0, 0, 0.24).applyMatrix4(this.head?.matrixWorld ?? this.root.matrixWorld);
-  }
-
-  handPlace(): Vector3 {
-    return new Vector3().setFromMatrixPosition((this.hand ?? this.root).matrixWorld);
   }
 
   /** Where the feet stand. */

@@ -46,9 +46,5 @@ export function meshesIn(object: Object3D): Mesh[] {
 export const skinnedIn = (object: Object3D): SkinnedMesh[] =>
   meshesIn(object).filter((mesh): mesh is SkinnedMesh => mesh instanceof SkinnedMesh);
 
-export const materialsIn = (object: Object3D): Material[] => [
-  ...new Set(meshesIn(object).flatMap((mesh) => mesh.material)),
-];
-
 export const isStandard = (material: Material): material is MeshStandardMaterial =>
   material instanceof MeshStandardMaterial;
