@@ -69,6 +69,8 @@ class Face:
 
 def moving_face(figure: Figure) -> Face:
     """A figure with a face that moves; the figure that is given stays as it is."""
+    if figure.shapes is not None:
+        return Face(figure, figure.shapes)
     head, is_above = _cut(figure["head"])
     others = tuple(garment for garment in figure.garments if garment.name != "head")
     garments = (head, _mouth(), _teeth(), *others)

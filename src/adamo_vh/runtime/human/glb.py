@@ -119,7 +119,7 @@ def _add_mesh(
         "indices": writer.accessor(
             garment.faces.ravel(), "SCALAR", INT if wide else SHORT, INDICES
         ),
-        "material": add_material(writer, garment.material),
+        "material": add_material(writer, garment.material, repeats=_repeats(garment)),
     }
     mesh: dict[str, Any] = {"name": garment.name, "primitives": [primitive]}
     if shapes:
@@ -129,6 +129,11 @@ def _add_mesh(
         mesh["weights"] = [0.0] * len(shapes)
         mesh["extras"] = {"targetNames": list(shapes)}
     return writer.add("meshes", mesh)
+
+
+def _repeats(garment: Garment) -> bool:
+    """Whether its picture goes on beyond its edges."""
+    return bool(garment.uvs.min(initial=0.0) < -1e-3 or garment.uvs.max(initial=1.0) > 1.0 + 1e-3)
 
 
 def _add_clip(writer: GlbWriter, clip: Clip) -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,8 @@ from adamo_vh.runtime.assets.asset import Material
 
 VARIANTS = ("mara", "jonas", "amina", "ken")
 """The people there are; the first is the default."""
+OWN = (".glb", ".vrm")
+"""How files of own figures end."""
 HEAD_GARMENTS = frozenset({"head", "eyes", "lids", "lashes", "brows", "hair"})
 """Garments that a camera between the eyes would see from inside."""
 LIDS_CLOSED_RAD = 0.72
@@ -27,7 +31,8 @@ class Garment:
     """A skinned triangle mesh of one material, in the rest pose, body frame."""
 
     name: str
-    """head, hair, brows, eyes, lids, lashes, hands, top, collar, trousers or shoes."""
+    """head, hair, brows, eyes, lids, lashes, hands, top, collar, trousers or shoes; the name of the
+    material says whether eyes look out of it."""
     vertices: NDArray[np.float32]
     """(N, 3) metres."""
     normals: NDArray[np.float32]
@@ -49,6 +54,8 @@ class Figure:
 
     variant: str
     garments: tuple[Garment, ...]
+    shapes: Mapping[str, Mapping[str, NDArray[np.float32]]] | None = None
+    """Of an own figure, its face: by garment and shape, (N, 3) how far each vertex goes, metres."""
 
     @property
     def triangle_count(self) -> int:
@@ -60,17 +67,30 @@ class Figure:
         return next(garment for garment in self.garments if garment.name == name)
 
 
+def is_own(variant: str) -> bool:
+    """Whether a figure is named by its file."""
+    return variant.lower().endswith(OWN)
+
+
 def load_figure(variant: str = VARIANTS[0]) -> Figure:
     """Read a person from the package.
 
     Args:
-        variant: One of `VARIANTS`.
+        variant: One of `VARIANTS`, or the path of an own figure: FILE.glb or FILE.vrm.
 
     Raises:
         ConfigError: No person has this name.
+        FileError: An own figure cannot be used.
     """
+    if is_own(variant):
+        from adamo_vh.runtime.human.own.reading import own_figure
+
+        return own_figure(Path(variant)).figure
     if variant not in VARIANTS:
-        raise ConfigError(f"There is no figure {variant!r}; choose one of {', '.join(VARIANTS)}.")
+        raise ConfigError(
+            f"There is no figure {variant!r}; choose one of {', '.join(VARIANTS)}, or name a "
+            "file of your own: FILE.glb or FILE.vrm."
+        )
     path = files("adamo_vh.runtime.human") / "data" / f"{variant}.npz"
     with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
         facts = json.loads(str(file["facts"]))

@@ -65,7 +65,7 @@ def _add_skin(spec: mujoco.MjSpec, garment: Garment) -> None:
     spec.add_skin(
         name=name,
         material=name,
-        group=HEAD_GROUP if garment.name in HEAD_GARMENTS else BODY_GROUP,
+        group=HEAD_GROUP if garment.material.name in HEAD_GARMENTS else BODY_GROUP,
         vert=garment.vertices.ravel().tolist(),
         texcoord=garment.uvs.ravel().tolist(),
         face=garment.faces.ravel().tolist(),
