@@ -26,7 +26,7 @@ _KINDS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class Entry:
     """What one folder of the cache holds."""
 
     folder: str
@@ -37,18 +37,18 @@ class Kept:
 
 def show(*, as_json: bool) -> None:
     """Say where the cache is, what it holds and what each folder is for."""
-    found = [_kept(name) for name in _KINDS]
+    found = [_entry(name) for name in _KINDS]
     if as_json:
-        put_json({"cache": str(cache_folder()), "folders": [asdict(kept) for kept in found]})
+        put_json({"cache": str(cache_folder()), "folders": [asdict(entry) for entry in found]})
         return
     say(f"{cache_folder()} ({CACHE_DIR} chooses another)")
-    for kept in found:
-        say(f"{kept.folder:<8} {kept.files:5d} files {kept.megabytes:8.1f} MB  {kept.what}")
+    for entry in found:
+        say(f"{entry.folder:<8} {entry.files:5d} files {entry.megabytes:8.1f} MB  {entry.what}")
 
 
 def clear(*, as_json: bool) -> None:
     """Remove what ADAMO made there, and nothing else: the folder may be anybody's."""
-    found = [_kept(name) for name in _KINDS]
+    found = [_entry(name) for name in _KINDS]
     for name in _KINDS:
         for path in _files(name):
             with naming("removed", path), suppress(FileNotFoundError):
@@ -63,12 +63,12 @@ def clear(*, as_json: bool) -> None:
         say(f"{cache_folder()}: removed {files} files, {megabytes:.1f} MB")
 
 
-def _kept(name: str) -> Kept:
+def _entry(name: str) -> Entry:
     sizes = []
     for path in _files(name):
         with suppress(OSError):
             sizes.append(path.stat().st_size)
-    return Kept(name, len(sizes), round(sum(sizes) / 1e6, 3), _KINDS[name][1])
+    return Entry(name, len(sizes), round(sum(sizes) / 1e6, 3), _KINDS[name][1])
 
 
 def _files(name: str) -> Iterator[Path]:

@@ -64,7 +64,7 @@ class OutsideEpisode:
         self,
         config: EpisodeConfig,
         model: OutsideModel,
-        kept: _Kept,
+        recall: _Recall,
         play: Callable[[], EpisodeResult],
         done: Callable[[OutsideEpisode], None] | None = None,
     ) -> None:
@@ -73,7 +73,7 @@ class OutsideEpisode:
         Args:
             config: How the episode is set up.
             model: Who waits for the mind outside.
-            kept: What the session remembers.
+            recall: What the session remembers.
             play: Carries the episode out, from its first question to its result.
             done: Is called when all is over, in the thread of the episode.
         """
@@ -81,7 +81,7 @@ class OutsideEpisode:
         self._inside, self._left = 0, time.monotonic()
         """How many callers are here now, and when the last one left."""
         self._model = model
-        self._kept = kept
+        self._recall = recall
         self._turn, self._count = threading.Lock(), threading.Lock()
         self._result: EpisodeResult | None = None
         self._fault: Exception | None = None
@@ -118,13 +118,16 @@ class OutsideEpisode:
             RecordError: `out` already holds a run, or somebody else writes it.
         """
         config = replace(config, profile=replace(config.profile, plan=1))
-        model, kept = OutsideModel(outside_name(client), _within_s(config), 0, isolation), _Kept()
+        model, recall = (
+            OutsideModel(outside_name(client), _within_s(config), 0, isolation),
+            _Recall(),
+        )
         session = Session.begin(
             config,
             out,
             engine=engine,
             model=model,
-            memory=kept.make,
+            memory=recall.make,
             observers=(*observers, _TellsEnd(model)),
         )
 
@@ -133,7 +136,7 @@ class OutsideEpisode:
                 session.say(config.instruction)
                 return session.result()
 
-        return cls(session.config, model, kept, play, done)
+        return cls(session.config, model, recall, play, done)
 
     @classmethod
     def resume(
@@ -159,18 +162,18 @@ class OutsideEpisode:
         manifest, said = read_manifest(folder), read_unfinished(folder).thoughts
         took_s = sum(thought.reply.seconds for thought in said)
         left_s = max(0.0, _within_s(manifest.config) - took_s)
-        model, kept = OutsideModel(manifest.model_name, left_s, len(said)), _Kept()
+        model, recall = OutsideModel(manifest.model_name, left_s, len(said)), _Recall()
 
         def play() -> EpisodeResult:
             return resume_episode(
                 folder,
                 engine=engine,
                 model=model,
-                memory=kept.make,
+                memory=recall.make,
                 observers=(_TellsEnd(model),),
             )
 
-        return cls(manifest.config, model, kept, play, done)
+        return cls(manifest.config, model, recall, play, done)
 
     @property
     def ended(self) -> bool:
@@ -300,12 +303,12 @@ class OutsideEpisode:
         return asked
 
     def _told(self, asked: Asked, pictures: tuple[ImagePart, ...]) -> View:
-        state = "" if self._kept.memory is None else self._kept.memory.state_text
+        state = "" if self._recall.memory is None else self._recall.memory.state_text
         words = [text for text in map(_words, asked.new) if text != state]
         return View("\n\n".join(words), state, pictures)
 
 
-class _Kept:
+class _Recall:
     """Keeps hold of the memory that a session makes for itself."""
 
     memory: Memory | None = None

@@ -16,7 +16,7 @@ _MOST = 40_000
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class Logged:
     """A message, as it is sent."""
 
     number: int
@@ -34,7 +34,7 @@ class Log:
             most: So many messages are kept.
         """
         self._most = most
-        self._kept: list[Kept] = []
+        self._kept: list[Logged] = []
         self._count = 0
         self._seconds = 0.0
         self._lock = threading.Lock()
@@ -52,7 +52,7 @@ class Log:
         with self._lock:
             self._count += 1
             whole = {"n": self._count, "t": round(seconds, 3), **message}
-            self._kept.append(Kept(self._count, whole, _text(whole)))
+            self._kept.append(Logged(self._count, whole, _text(whole)))
             if len(self._kept) > self._most:
                 self._kept = _thinned(self._kept)
                 # Events alone are more than may be kept: the oldest go.
@@ -64,7 +64,7 @@ class Log:
         self.closed = True
         self._wake()
 
-    def since(self, number: int, most: int = 500) -> list[Kept]:
+    def since(self, number: int, most: int = 500) -> list[Logged]:
         """The messages from a serial on, so many at most; where some were thinned, the next."""
         with self._lock:
             start = bisect.bisect_left(self._kept, number, key=lambda kept: kept.number)
@@ -96,16 +96,16 @@ class Log:
                 wake()
 
 
-def _thinned(kept: list[Kept]) -> list[Kept]:
+def _thinned(kept: list[Logged]) -> list[Logged]:
     """Without every other pose of the older three quarters; what one changed goes to the next."""
     old = len(kept) * 3 // 4
-    found: list[Kept] = []
+    found: list[Logged] = []
     dropped: Message | None = None
     for place, one in enumerate(kept):
         is_pose = one.message["type"] == "pose"
         if dropped is not None:
             message = _merged(dropped, one.message)
-            found.append(Kept(one.number, message, _text(message)))
+            found.append(Logged(one.number, message, _text(message)))
             dropped = None
         elif is_pose and place < old and _next_is_pose(kept, place):
             dropped = one.message
@@ -118,7 +118,7 @@ def _text(message: Message) -> str:
     return json.dumps(message, separators=(",", ":"))
 
 
-def _next_is_pose(kept: list[Kept], place: int) -> bool:
+def _next_is_pose(kept: list[Logged], place: int) -> bool:
     return place + 1 < len(kept) and kept[place + 1].message["type"] == "pose"
 
 

@@ -17,13 +17,13 @@ from adamo_vh.inference.baseline.mind import placing, searching
 from adamo_vh.inference.baseline.mind.choosing import targets, thing_of
 from adamo_vh.inference.baseline.mind.evidence import claim
 from adamo_vh.inference.baseline.mind.memory import (
+    Decision,
     Finish,
     Job,
     Memory,
     Move,
     Search,
     Stand,
-    Step,
     Thing,
     to_point,
 )
@@ -296,7 +296,7 @@ def test_the_tools_on_offer_are_those_of_the_schemas() -> None:
 
 
 def test_calls_are_valid_and_carry_the_note_as_text() -> None:
-    said = say(Step("I see it.", (LOOK, PICK)), Manner(), "Pick the plate")
+    said = say(Decision("I see it.", (LOOK, PICK)), Manner(), "Pick the plate")
     assert said.text == "I see it."
     assert [call.name for call in said.calls] == ["Look", "Pick"]
     assert len({call.id for call in said.calls}) == 2
@@ -306,7 +306,7 @@ def test_calls_are_valid_and_carry_the_note_as_text() -> None:
 
 def test_where_tools_take_notes_the_first_call_has_it() -> None:
     manner = Manner(notes=frozenset({"Look", "Pick"}))
-    said = say(Step("I see it.", (LOOK, PICK)), manner, "")
+    said = say(Decision("I see it.", (LOOK, PICK)), manner, "")
     assert said.text == ""
     notes = [(call.arguments or {})["note"] for call in said.calls]
     assert notes[0] == "I see it."
@@ -315,13 +315,13 @@ def test_where_tools_take_notes_the_first_call_has_it() -> None:
 
 
 def test_a_tool_that_is_missing_is_said_and_nothing_is_called() -> None:
-    said = say(Step("", (PICK,)), Manner(tools=frozenset({"Look"})), "Pick the plate")
+    said = say(Decision("", (PICK,)), Manner(tools=frozenset({"Look"})), "Pick the plate")
     assert said.calls == ()
     assert said.text == "I cannot go on: I have no tool named Pick."
 
 
 def test_the_end_is_text_or_a_finish_where_there_is_one() -> None:
-    end = Step(finish=Finish("Done: I hold Plate_57.", "by the feedback", "nothing", 0.9))
+    end = Decision(finish=Finish("Done: I hold Plate_57.", "by the feedback", "nothing", 0.9))
     assert say(end, Manner(), "").text == "Done: I hold Plate_57."
     manner = Manner(tools=frozenset({"Finish"}), notes=frozenset({"Finish"}))
     (call,) = say(end, manner, "Pick the plate").calls
@@ -332,5 +332,5 @@ def test_the_end_is_text_or_a_finish_where_there_is_one() -> None:
 
 
 def test_the_same_step_is_said_in_the_same_words() -> None:
-    step = Step("I see it.", (LOOK, PICK))
+    step = Decision("I see it.", (LOOK, PICK))
     assert say(step, Manner(), "x") == say(step, Manner(), "x")

@@ -76,14 +76,14 @@ class ToolResult:
     role: Literal["tool"] = "tool"
 
 
-Kept = SystemMessage | Human | AIMessage | ToolResult
+Plain = SystemMessage | Human | AIMessage | ToolResult
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
     """What a model was asked."""
 
-    messages: tuple[Annotated[Kept, Field(discriminator="role")], ...]
+    messages: tuple[Annotated[Plain, Field(discriminator="role")], ...]
     tools: tuple[ToolSchema, ...]
     sampling: Sampling
 
@@ -120,7 +120,7 @@ def request_of(
     offered = tuple(
         ToolSchema(clean(t.name), clean(t.description), cleaned(t.parameters, clean)) for t in tools
     )
-    return Request(tuple(_kept(m, clean) for m in messages), offered, sampling)
+    return Request(tuple(_plain(m, clean) for m in messages), offered, sampling)
 
 
 def clean_reply(reply: Reply, clean: Clean = without_keys) -> Reply:
@@ -152,7 +152,7 @@ def sections(request: Request) -> list[tuple[str, str]]:
     return [*told, *tools, ("sampling", _json(sampling))]
 
 
-def _kept(message: Message, clean: Clean) -> Kept:
+def _plain(message: Message, clean: Clean) -> Plain:
     match message:
         case SystemMessage():
             return SystemMessage(clean(message.text))
@@ -177,7 +177,7 @@ def _picture(part: ImagePart) -> Picture:
     return Picture(digest, part.media_type, part.width_px, part.height_px)
 
 
-def _shown(message: Kept) -> str:
+def _shown(message: Plain) -> str:
     match message:
         case SystemMessage():
             return message.text

@@ -69,7 +69,7 @@ class RemoteWorld:
         self._furniture: tuple[FurnitureOutline, ...] = answer.furniture
         self._fresh: int | None = None
         """The seed of the last reset, if nothing was done since."""
-        self._bodies = {n: RemoteBody(self, n, info) for n, info in bodies.bodies.items()}
+        self._bodies = {n: _RemoteBody(self, n, info) for n, info in bodies.bodies.items()}
 
     @property
     def abilities(self) -> Abilities:
@@ -192,7 +192,7 @@ class RemoteWorld:
         self.line.released()
 
 
-class RemoteBody:
+class _RemoteBody:
     """A body in an engine that dialled in. Implements `adamo_vh.engine.Body`."""
 
     def __init__(self, world: RemoteWorld, name: str, info: BodyInfo) -> None:

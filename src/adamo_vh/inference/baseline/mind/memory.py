@@ -201,7 +201,7 @@ class Finish:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class Decision:
     """One turn: calls, or the end."""
 
     note: str = ""

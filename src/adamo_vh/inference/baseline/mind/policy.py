@@ -17,13 +17,13 @@ from adamo_vh.inference.baseline.mind.beliefs import (
 from adamo_vh.inference.baseline.mind.evidence import anchor_of, second_of
 from adamo_vh.inference.baseline.mind.happenings import MAX_TRIES, current_job, imagined
 from adamo_vh.inference.baseline.mind.memory import (
+    Decision,
     Finish,
     Job,
     Memory,
     Move,
     Search,
     Status,
-    Step,
     Thing,
     to_point,
 )
@@ -45,7 +45,7 @@ _VIEWS_FOR_FURNITURE = 8
 
 def decide(
     prompt: Prompt, plan: Plan, manner: Manner | None = None, reader: WordReader | None = None
-) -> Step:
+) -> Decision:
     """Choose the next turn.
 
     Args:
@@ -56,14 +56,14 @@ def decide(
     """
     manner = manner or Manner()
     if plan.problem:
-        return Step(finish=refusal(plan.problem))
+        return Decision(finish=refusal(plan.problem))
     memory = recalled(prompt, plan)
     before = memory.copy()
     look(prompt, plan, memory, reader)
     turn = Choice(prompt, plan, memory, manner)
     move, end = turn.first_move()
     if end is not None:
-        return Step(finish=end)
+        return Decision(finish=end)
     assert move is not None
     plan, known = turn.plan, memory.copy()
     moves = _plan_on(turn, move, known)
@@ -71,7 +71,7 @@ def decide(
         f"Evidence: {_evidence(prompt, known)} Conclusion: {move.conclusion} "
         f"Next: {', '.join(m.describe() for m in moves)}. "
     )
-    return Step(note + carried_over(prompt, plan, known, before, moves), tuple(moves))
+    return Decision(note + carried_over(prompt, plan, known, before, moves), tuple(moves))
 
 
 def _plan_on(turn: Choice, first: Move, known: Memory) -> list[Move]:

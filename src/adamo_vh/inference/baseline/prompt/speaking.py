@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from adamo_vh.action import ToolSchema
-from adamo_vh.inference.baseline.mind.memory import Finish, Move, Step
+from adamo_vh.inference.baseline.mind.memory import Decision, Finish, Move
 from adamo_vh.inference.messages import AIMessage, Message, SystemMessage, ToolCall
 
 _SEVERAL = re.compile(r"several calls[^\n]*?up to (\d+)|several calls", re.IGNORECASE)
@@ -57,7 +57,7 @@ def manner_of(messages: Sequence[Message], tools: Sequence[ToolSchema]) -> Manne
 _FOLLOWS = "As planned."
 
 
-def say(step: Step, manner: Manner, instruction: str) -> AIMessage:
+def say(step: Decision, manner: Manner, instruction: str) -> AIMessage:
     """Write a turn.
 
     Args:
