@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -109,7 +110,8 @@ def test_refused_parameters_are_found_and_no_longer_sent() -> None:
         again = create_model(server.uri(), QUICK)
         assert isinstance(again, Ladder) and again.info.capabilities == found
         before = len(server.requests)
-        again.complete([HumanMessage((TextPart("Hi"),))], [], Sampling())
+        with closing(again.info):
+            again.complete([HumanMessage((TextPart("Hi"),))], [], Sampling())
         assert len(server.requests) == before + 1
         assert "temperature" not in server.requests[-1]
 
