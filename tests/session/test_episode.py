@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.spread import spread
 
 import adamo_vh
 from adamo_vh.episode.result import read_manifest, read_result, summarise
@@ -192,7 +193,7 @@ def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
         adamo_vh.resume_episode(folder)
 
 
-@pytest.mark.parametrize("kept_lines", range(1, 11))
+@pytest.mark.parametrize("kept_lines", spread(range(1, 11), 3))
 def test_an_episode_resumes_from_any_moment(
     kept_lines: int, script: Path, tmp_path: Path, engine: BuiltinEngine
 ) -> None:

@@ -45,6 +45,8 @@ class Refusal:
 
     status: int
     text: str
+    after_s: int = 0
+    """When to ask again; 0 for no promise."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,6 @@ _MORE_HEADERS = {
     401: [(b"www-authenticate", b"Bearer")],
     408: [(b"connection", b"close")],  # What is still to come of the body is no request.
     413: [(b"connection", b"close")],
-    429: [(b"retry-after", b"1")],
 }
 
 
@@ -86,7 +85,8 @@ class Edge:
         wait_s = self._meter.wait_s(_address(scope))
         if not wait_s:
             return None
-        return Refusal(429, f"Too many requests; ask again in {math.ceil(wait_s)} s.")
+        after_s = math.ceil(wait_s)
+        return Refusal(429, f"Too many requests; ask again in {after_s} s.", after_s)
 
     def _too_large(self, path: str) -> Refusal:
         limit = self.rules.most_bytes(path, message=False)
@@ -161,5 +161,7 @@ async def _refuse(refusal: Refusal, scope: Any, send: Send) -> None:
         (b"content-length", str(len(body)).encode()),
     ]
     headers.extend(_MORE_HEADERS.get(refusal.status, ()))
+    if refusal.after_s:
+        headers.append((b"retry-after", str(refusal.after_s).encode()))
     await send({"type": f"{kind}.response.start", "status": refusal.status, "headers": headers})
     await send({"type": f"{kind}.response.body", "body": body})
