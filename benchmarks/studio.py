@@ -25,7 +25,8 @@ from adamo_vh.runtime.human.looks import load_figure
 from adamo_vh.runtime.scenes.glb import scene_glb
 from adamo_vh.service.app import serving
 from adamo_vh.service.hosting import Host, Terms
-from adamo_vh.session.builtin import figure_glb, read_scene
+from adamo_vh.session.builtin import read_scene
+from adamo_vh.session.figures import figure_glb
 from adamo_vh.session.posing import Posing
 from adamo_vh.studio.editing import Editor
 from adamo_vh.studio.face import Studio, studio_face

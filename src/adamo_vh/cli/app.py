@@ -11,6 +11,7 @@ from adamo_vh.cli.agent_options import AgentBind, AgentCmd, AgentEnv, Isolation
 from adamo_vh.cli.body_options import BodyToken, BodyUrl, JudgeToken
 from adamo_vh.cli.engines_app import engines_app
 from adamo_vh.cli.exits import listed
+from adamo_vh.cli.figure_app import figure_app
 from adamo_vh.cli.mcp_app import mcp_app
 from adamo_vh.cli.scenes_app import scenes_app
 from adamo_vh.cli.serve_app import serve_app
@@ -38,11 +39,15 @@ app.add_typer(engines_app)
 app.add_typer(serve_app)
 app.add_typer(speech_app, name="speech")
 app.add_typer(studio_app)
+app.add_typer(figure_app, name="figure")
 
 _KEYS = ("token", "judge_token")
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Scene = Annotated[str, typer.Option(help="Built-in scene or scene file.")]
-Figure = Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")]
+Figure = Annotated[
+    str,
+    typer.Option(help="Body: mara, jonas, amina, ken, or a file of your own: .glb or .vrm."),
+]
 Labeling = Annotated[str, typer.Option(help="sem or opaq.")]
 Model = Annotated[str, typer.Option(help=HELP)]
 ToolCalls = Annotated[
@@ -305,17 +310,6 @@ def cache_clear(json: Json = False) -> None:
     from adamo_vh.cli.cache import clear
 
     clear(as_json=json)
-
-
-@app.command("figure")
-def export_figure(
-    file: Annotated[Path, typer.Argument(help="FILE.glb to write.")],
-    who: Annotated[str, typer.Option(help="mara, jonas, amina or ken.")] = "mara",
-) -> None:
-    """Export the virtual human as a skinned GLB with the clips walk, reach and idle."""
-    from adamo_vh.cli.figure import export
-
-    export(file, who)
 
 
 @app.command("serve-model")

@@ -25,7 +25,9 @@ def mcp(
         str | None, typer.Option(help="A task instead: T1 to T15, or a task file.")
     ] = None,
     scene: Annotated[str, typer.Option(help="Built-in scene or scene file.")] = "s1",
-    figure: Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")] = "mara",
+    figure: Annotated[
+        str, typer.Option(help="Body: mara, jonas, amina, ken, or a file of your own.")
+    ] = "mara",
     labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
     profile: Annotated[
         str, typer.Option(help="How the mind is spoken to: paper, paper-exact, lean or single.")

@@ -17,7 +17,9 @@ serve_app = typer.Typer()
 def serve(
     scene: Annotated[str, typer.Option(help="Where sessions play that name no scene.")] = "s1",
     labeling: Annotated[str, typer.Option(help="sem or opaq.")] = "sem",
-    figure: Annotated[str, typer.Option(help="Body: mara, jonas, amina or ken.")] = "mara",
+    figure: Annotated[
+        str, typer.Option(help="Body: mara, jonas, amina, ken, or a file of your own.")
+    ] = "mara",
     engine: Annotated[
         str,
         typer.Option(help="built-in; or remote: engines dial in at /engine (docs/engines.md)."),

@@ -38,6 +38,7 @@ def studio(
     hosts: Sequence[str],
     models: Sequence[str],
     scenes: Sequence[Path],
+    figures: Sequence[Path],
     most_rooms: int,
     resolution: str,
     ears: str,
@@ -55,6 +56,7 @@ def studio(
         hosts: Further names under which this machine may be asked.
         models: Models that may be chosen beside those that are on offer.
         scenes: Scene files that may be chosen.
+        figures: Own figures that may be chosen.
         most_rooms: So many rooms are open at once.
         resolution: Of the pictures that a mind is shown.
         ears: What hears; empty for what was fetched, `NONE` for nothing.
@@ -68,6 +70,7 @@ def studio(
         from adamo_vh.service.app import FACES, MAX_BODY_BYTES, serving
         from adamo_vh.studio.face import AT, CONTENT_TYPES, Studio, studio_face
     from adamo_vh.service.hosting import Host, Terms
+    from adamo_vh.session.figures import check_figure
     from adamo_vh.studio.editing import Editor
     from adamo_vh.studio.library import Library
     from adamo_vh.studio.meshes import Meshes
@@ -76,6 +79,8 @@ def studio(
 
     for folder in runs:
         _check(folder)
+    for file in figures:
+        check_figure(file)
     key = key_of(token, "--token")
     rules = Rules(
         MAX_BODY_BYTES,
@@ -85,7 +90,7 @@ def studio(
         browsed=AT,
     )
     parent = out or RUNS
-    offer = Offer(models, scenes)
+    offer = Offer(models, scenes, figures)
     rooms = Rooms(parent, offer, RoomTerms(most=most_rooms, resolution=resolution))
     editor = Editor(parent / "scenes", offer)
     library = Library([*(runs or ()), parent])

@@ -29,6 +29,10 @@ def studio(
         list[Path] | None,
         typer.Option(help="One more scene file that may be chosen; may be repeated."),
     ] = None,
+    figure: Annotated[
+        list[Path] | None,
+        typer.Option(help="A figure of your own: FILE.glb or FILE.vrm; may be repeated."),
+    ] = None,
     resolution: Annotated[
         str, typer.Option(help="Size of the frames that a mind is shown, WIDTHxHEIGHT.")
     ] = "1920x1080",
@@ -71,6 +75,7 @@ def studio(
         hosts=allow_host or [],
         models=model or [],
         scenes=scene or [],
+        figures=figure or [],
         most_rooms=rooms,
         resolution=resolution,
         ears=ears,

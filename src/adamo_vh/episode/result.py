@@ -56,6 +56,8 @@ class Manifest:
     format: int = FORMAT
     isolation: Isolation = ""
     """How far a program that decides is kept from all but its body; see `ModelInfo.isolation`."""
+    figure_sha256: str = ""
+    """Digest of the file of an own figure, whose copy lies in the run folder."""
 
     @property
     def is_ranked(self) -> bool:

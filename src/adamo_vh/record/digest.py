@@ -16,12 +16,12 @@ from typing import Any
 
 from adamo_vh.errors import RecordError
 from adamo_vh.files import naming
-from adamo_vh.record.run_folder import EVENTS, FRAMES, MANIFEST, RESULT, SCENE, SCRIPT
+from adamo_vh.record.run_folder import EVENTS, FIGURE, FRAMES, MANIFEST, RESULT, SCENE, SCRIPT
 from adamo_vh.record.trajectory import Observed, Shown, Trajectory
 
 SEAL = "seal"
 """The member of the result that holds the seal."""
-_FILES = (MANIFEST, EVENTS, SCENE, SCRIPT)
+_FILES = (MANIFEST, EVENTS, SCENE, SCRIPT, FIGURE)
 """Those that are sealed, as far as they are there."""
 _MISSING = "missing"
 

@@ -26,7 +26,7 @@ EVENTS = "events.jsonl"
 FRAMES = "frames"
 RESULT = "result.json"
 LOCK = "run.lock"
-SCENE, SCRIPT = "scene.toml", "script.json"
+SCENE, SCRIPT, FIGURE = "scene.toml", "script.json", "figure.glb"
 """Own files that the episode rests on."""
 FORMAT = 2
 """Of the files; older ones can be read, not continued."""

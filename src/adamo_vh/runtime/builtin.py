@@ -18,7 +18,7 @@ from adamo_vh.runtime.builtin_body import BuiltinBody
 from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.graphics import check_process, load_mujoco
 from adamo_vh.runtime.happenings import Happenings
-from adamo_vh.runtime.human.looks import VARIANTS, load_figure
+from adamo_vh.runtime.human.looks import VARIANTS, identity, load_figure
 from adamo_vh.runtime.inspection.settled import settled_world
 from adamo_vh.runtime.scenes.scene import Scene, load_scene, scene_names
 from adamo_vh.runtime.snapshot import Snapshot
@@ -46,12 +46,14 @@ class BuiltinEngine:
 
         Args:
             scene: Name of a built-in scene, path of a scene file, or a loaded scene.
-            figure: Who the virtual human is, one of `adamo_vh.runtime.human.looks.VARIANTS`.
+            figure: Who the virtual human is, one of `adamo_vh.runtime.human.looks.VARIANTS`, or
+                the path of an own one.
             origin: Name or path of the scene that a loaded one was made of.
 
         Raises:
             SceneError: The scene is unknown or wrong, or the physics cannot take it.
             ConfigError: No figure has this name.
+            FileError: An own figure cannot be used.
         """
         self._scene = load_scene(scene) if isinstance(scene, str) else scene
         check_process()
@@ -199,5 +201,5 @@ class BuiltinEngine:
 def _described(scene: Scene, given: str, figure: str) -> SceneInfo:
     """What the engine says of its scene, with its origin and its digest."""
     source = "built-in" if given.lower() in scene_names() else given or "given"
-    digest = hashlib.sha256(repr((scene, figure)).encode()).hexdigest()
+    digest = hashlib.sha256(repr((scene, identity(figure))).encode()).hexdigest()
     return replace(scene.info(), source=source, digest=digest)

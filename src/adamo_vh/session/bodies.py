@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -25,6 +26,7 @@ from adamo_vh.files import write_whole
 from adamo_vh.perception import PerceptionConfig, Tagger
 from adamo_vh.record.run_folder import SCENE, SCRIPT
 from adamo_vh.record.trajectory import Trajectory
+from adamo_vh.session.figures import recorded_figure
 from adamo_vh.session.lending import LentWorld
 from adamo_vh.session.spare import engine_for
 
@@ -40,7 +42,8 @@ def create_engine(scene: str = "s1", figure: str = "mara", variation: int = 0) -
         scene: Built-in scene or path of a scene file; or ``NAME:REST`` of an engine that another
             package offers under the entry point NAME of ``adamo_vh.engines``: a function of REST
             and the figure that gives a `World`.
-        figure: Who the virtual human is: mara, jonas, amina or ken.
+        figure: Who the virtual human is: mara, jonas, amina, ken, or a file of your own, FILE.glb
+            or FILE.vrm.
         variation: Of the scene's layout; 0 is the scene as it stands. One that is not known yet is
             looked for first, which takes some ten seconds.
 
@@ -87,7 +90,7 @@ def opened(
         acting_body(engine)
         world = engine
     else:
-        scene, variation = config.scene, config.variation
+        scene, variation, figure = config.scene, config.variation, config.figure
         if recorded is not None:
             folder, manifest = recorded
             if manifest.engine:
@@ -98,11 +101,15 @@ def opened(
             if (folder / SCENE).is_file():
                 # It is the variation itself, whatever is drawn for its number today.
                 scene, variation = str(folder / SCENE), 0
+            told = recorded_figure(folder, manifest)
+            figure = told.who
+            if told.lacks:
+                warnings.warn(told.lacks, stacklevel=2)
         if scene.partition(":")[0] in offered_by_others(ENGINES):
-            world = create_engine(scene, config.figure, variation)
+            world = create_engine(scene, figure, variation)
             stack.callback(world.close)
         else:
-            world = stack.enter_context(engine_for(scene, config.figure, variation))
+            world = stack.enter_context(engine_for(scene, figure, variation))
     if config.profile.closeups and not abilities(world).closeup:
         raise ConfigError(
             f"This engine draws no close-ups, which profile {config.profile.name!r} is about; "

@@ -1,6 +1,6 @@
 """The one door to the built-in engine for those who need more of it than a `World`.
 
-Scene checks, pictures, figures and a look at the machine: the command line, adapters and pages ask
+Scene checks, pictures and a look at the machine: the command line, adapters and pages ask
 here, so that nothing but the session knows which engine is built in.
 """
 
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from adamo_vh.errors import RenderingError, SceneError
-from adamo_vh.files import check_place, write_whole
+from adamo_vh.files import write_whole
 from adamo_vh.plugins import ENGINES, plugin_names
 
 if TYPE_CHECKING:
@@ -176,34 +176,6 @@ def scene_glb(file: str, variation: int = 0) -> bytes:
     return cached(f"scene_{digest}.glb", make)
 
 
-def figure_glb(who: str) -> bytes:
-    """A figure as a skinned GLB with its clips; kept in the cache like a scene.
-
-    Raises:
-        ConfigError: No figure has this name.
-    """
-    from adamo_vh.runtime import human
-    from adamo_vh.runtime.assets.bake import cached
-    from adamo_vh.runtime.human.clips import clips
-    from adamo_vh.runtime.human.glb import figure_glb as written
-    from adamo_vh.runtime.human.looks import load_figure
-
-    figure = load_figure(who)
-    digest = sha256()
-    for path in sorted(Path(human.__path__[0]).rglob("*")):
-        if path.suffix == ".py" or path.stem == who:
-            digest.update(path.read_bytes())
-    name = f"figure_{who}_{digest.hexdigest()[:24]}.glb"
-    return cached(name, lambda: written(figure, clips()))
-
-
-def figure_names() -> tuple[str, ...]:
-    """Who the virtual human can be; the first is the default."""
-    from adamo_vh.runtime.human.looks import VARIANTS
-
-    return VARIANTS
-
-
 def light_of(scene: Scene) -> str:
     """How bright a variation is, in a word: normal, low or high."""
     from adamo_vh.runtime.scenes.variation import light_preset
@@ -258,24 +230,6 @@ def _pictures(
         view = engine.view(outside) if outside else engine.capture(1920, 1080)
         drawn[name] = view.rgb
     return drawn
-
-
-def write_figure(file: Path, who: str) -> str:
-    """Write a figure as a skinned GLB with its clips; what it has, in words.
-
-    Raises:
-        ConfigError: No figure has this name.
-        FileError: It cannot be written there.
-    """
-    from adamo_vh.runtime.human.clips import clips
-    from adamo_vh.runtime.human.glb import write_glb
-    from adamo_vh.runtime.human.looks import load_figure
-
-    check_place(file.parent)
-    figure, motions = load_figure(who), clips()
-    write_glb(file, figure, motions)
-    names = ", ".join(clip.name for clip in motions)
-    return f"{figure.triangle_count} triangles, clips {names}"
 
 
 def graphics_name() -> str:

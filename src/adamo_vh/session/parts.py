@@ -23,6 +23,7 @@ from adamo_vh.inference.model import Model, ModelInfo
 from adamo_vh.perception import Tagger
 from adamo_vh.record.trajectory import Observer
 from adamo_vh.session.bodies import own_engine
+from adamo_vh.session.figures import digest_in
 
 _REPORTED = ("adamo-vh", "mujoco", "numpy", "pillow", "opencv-python-headless", "pydantic-ai-slim")
 
@@ -69,6 +70,7 @@ def describe(config: EpisodeConfig, who: ModelInfo, world: World, parts: Parts) 
         engine_lacks=abilities(world).lacking(),
         labeling="" if tagger is None else type(tagger).__name__,
         isolation=who.isolation,
+        figure_sha256=digest_in(world, config.figure),
     )
 
 

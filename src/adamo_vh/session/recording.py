@@ -14,6 +14,7 @@ from adamo_vh.record.run_folder import MANIFEST, FolderLock, check_unused
 from adamo_vh.record.trajectory import Trajectory
 from adamo_vh.record.writer import TrajectoryWriter
 from adamo_vh.session.bodies import store_sources
+from adamo_vh.session.figures import keep_figure
 
 
 def begin_record(
@@ -34,6 +35,7 @@ def begin_record(
     lock = stack.enter_context(FolderLock(folder))
     check_unused(folder)
     store_sources(folder, manifest.config, world)
+    keep_figure(folder, manifest)
     write_record(folder, MANIFEST, manifest)
     writer = TrajectoryWriter(folder, lock=lock)
     stack.callback(writer.close)

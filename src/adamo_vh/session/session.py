@@ -54,6 +54,7 @@ from adamo_vh.session.bodies import (
     opened,
 )
 from adamo_vh.session.cut_short import as_recorded
+from adamo_vh.session.figures import recorded_figure
 from adamo_vh.session.forecasting import check_price, forecast_episodes, refuse_early
 from adamo_vh.session.minds import fitting, lasting, opened_model, resumed_model
 from adamo_vh.session.parts import Parts, capped, describe
@@ -238,6 +239,9 @@ class Session:
                 manifest = replace(manifest, config=replace(manifest.config, budget=budget))
             check_price(manifest.config.model, budget or Budget(), mind)
             check_price(manifest.config.model, cap or Budget(), mind)
+            if parts.get("engine") is None and (lacks := recorded_figure(path, manifest).lacks):
+                # Who goes on would see another body in the frames.
+                raise RecordError(lacks)
             world = opened(stack, manifest.config, parts.get("engine"), (path, manifest))
             writer = TrajectoryWriter(path, known=on_file, lock=lock)
             stack.callback(writer.close)

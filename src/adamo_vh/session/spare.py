@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from adamo_vh.action_server.frame_check import frame_fault
+from adamo_vh.session.figures import figure_digest
 from adamo_vh.session.variations import built_in_scene
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ class _Place:
     scene: Scene
     named: str
     figure: str
+    looks: str
+    """Digest of an own figure."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,7 +87,7 @@ def engine_for(scene: str, figure: str, variation: int = 0) -> Iterator[BuiltinE
         SceneError: The scene is unknown or wrong, or has no such variation.
         ConfigError: No figure has this name.
     """
-    place = _Place(built_in_scene(scene, variation), scene, figure)
+    place = _Place(built_in_scene(scene, variation), scene, figure, figure_digest(figure))
     used = _taken(place) or _made(place)
     try:
         yield used.engine

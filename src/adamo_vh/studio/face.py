@@ -20,11 +20,10 @@ from adamo_vh.record.trajectory import frame_type
 from adamo_vh.service.app import Face
 from adamo_vh.service.hosting import NoSessionError
 from adamo_vh.serving.admission import COOKIE
-from adamo_vh.session.builtin import figure_names
 from adamo_vh.session.editing import catalog
 from adamo_vh.studio.editing import Draft, Editor
 from adamo_vh.studio.files import PAGE, SAFE, page_file
-from adamo_vh.studio.library import Library, scene_of
+from adamo_vh.studio.library import Library, figure_of, scene_of
 from adamo_vh.studio.live import Connection
 from adamo_vh.studio.meshes import Meshes, Packed
 from adamo_vh.studio.offer import Offer
@@ -60,7 +59,7 @@ class Studio:
         with suppress(AdamoError):
             self.talk.warm()
         with suppress(AdamoError):
-            self.meshes.figure(figure_names()[0])
+            self.meshes.figure(*_versioned(self.offer.figure(self.offer.figures()[0])))
             self.meshes.scene(self.offer.scenes()[0], 0)
 
     def close(self) -> None:
@@ -153,8 +152,7 @@ def _choices(studio: Studio) -> APIRouter:
     async def scene(
         request: Request, scene: str, variation: Annotated[int, Query(ge=0, le=999_999)] = 0
     ) -> Response:
-        file = studio.offer.scene(scene)
-        version = str(Path(file).stat().st_mtime_ns) if Path(file).is_file() else ""
+        file, version = _versioned(studio.offer.scene(scene))
         packed = await asyncio.to_thread(studio.meshes.scene, file, variation, version)
         return _packed(request, packed, "model/gltf-binary")
 
@@ -164,10 +162,17 @@ def _choices(studio: Studio) -> APIRouter:
 
     @router.get("/figures/{figure}.glb")
     async def figure(request: Request, figure: str) -> Response:
-        packed = await asyncio.to_thread(studio.meshes.figure, figure)
+        who = _versioned(studio.offer.figure(figure))
+        packed = await asyncio.to_thread(studio.meshes.figure, *who)
         return _packed(request, packed, "model/gltf-binary")
 
     return router
+
+
+def _versioned(name: str) -> tuple[str, str]:
+    """A name or a file, and of a file when it was changed."""
+    path = Path(name)
+    return name, str(path.stat().st_mtime_ns) if path.is_file() else ""
 
 
 def _drafts(studio: Studio) -> APIRouter:
@@ -243,6 +248,12 @@ def _runs(studio: Studio) -> APIRouter:
         file, variation = scene_of(found)
         version = str(found.when) if file.endswith(SCENE) else ""
         packed = await asyncio.to_thread(studio.meshes.scene, file, variation, version)
+        return _packed(request, packed, "model/gltf-binary")
+
+    @router.get("/{run:path}/figure.glb")
+    async def figure(request: Request, run: str) -> Response:
+        found = await asyncio.to_thread(studio.library.find, run)
+        packed = await asyncio.to_thread(studio.meshes.figure, figure_of(found), str(found.when))
         return _packed(request, packed, "model/gltf-binary")
 
     @router.get("/{run:path}/frames/{name}")

@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from adamo_vh.episode.result import read_manifest
 from adamo_vh.errors import ConfigError, FileError
 from adamo_vh.files import read_json
 from adamo_vh.readable import readable
 from adamo_vh.record.run_folder import EVENTS, MANIFEST, RESULT, SCENE, read_head
 from adamo_vh.service.hosting import NoSessionError
+from adamo_vh.session.figures import recorded_figure
 from adamo_vh.studio.messages import Href, Places
 from adamo_vh.studio.tracks import Track, track_of
 from adamo_vh.study.store import EPISODES, is_study
@@ -120,12 +122,19 @@ class Library:
 
 def places(run: Run) -> Places:
     """Where the page finds the meshes of a run."""
-    config = read_head(run.folder).get("config")
-    figure = config.get("figure") if isinstance(config, dict) else None
-    return Places(
-        f"/studio/api/runs/{quote(run.name)}/scene.glb",
-        f"/studio/api/figures/{quote(str(figure or 'mara'), safe='')}.glb",
-    )
+    at = f"/studio/api/runs/{quote(run.name)}"
+    return Places(f"{at}/scene.glb", f"{at}/figure.glb")
+
+
+def figure_of(run: Run) -> str:
+    """The figure of a run: its own file, or one that comes with the package.
+
+    Where the file of an own one is missing or was changed, the default stands in, as on replay.
+
+    Raises:
+        RecordError: The folder holds no run.
+    """
+    return recorded_figure(run.folder, read_manifest(run.folder), elsewhere=False).who
 
 
 def scene_of(run: Run) -> tuple[str, int]:

@@ -9,8 +9,9 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from adamo_vh.session.builtin import figure_glb, scene_glb
+from adamo_vh.session.builtin import scene_glb
 from adamo_vh.session.editing import asset_mesh
+from adamo_vh.session.figures import figure_glb
 
 _MOST = 60
 
@@ -52,13 +53,18 @@ class Meshes:
         key = ("scene", file, str(variation), version)
         return self._once(key, lambda: scene_glb(file, variation))
 
-    def figure(self, who: str) -> Packed:
+    def figure(self, who: str, version: str = "") -> Packed:
         """A figure.
+
+        Args:
+            who: A name, or the file of an own figure.
+            version: Of a file that may change.
 
         Raises:
             ConfigError: No figure has this name.
+            FileError: An own figure cannot be used.
         """
-        return self._once(("figure", who), lambda: figure_glb(who))
+        return self._once(("figure", who, version), lambda: figure_glb(who))
 
     def asset(self, name: str) -> Packed:
         """A piece of furniture or an object by itself.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError
@@ -74,7 +75,7 @@ def hello(part: Part, manifest: Manifest, body: BodyInfo | None, title: str, at:
             "task": config.task,
             "scene": config.scene,
             "variation": scene.variation,
-            "figure": config.figure,
+            "figure": Path(config.figure).name,
             "model": manifest.model_name,
             "model_kind": str(manifest.model_kind),
             "profile": str(config.profile),
@@ -96,7 +97,7 @@ def hello(part: Part, manifest: Manifest, body: BodyInfo | None, title: str, at:
             "areas": [asdict(area) for area in scene.areas],
         },
         "body": None if body is None else _body(body),
-        "figure": {"name": config.figure, "glb": at.figure},
+        "figure": {"name": Path(config.figure).name, "glb": at.figure},
         "joints": list(joint_names()),
         "rate": RATE_HZ,
         "controls": list(part.controls),

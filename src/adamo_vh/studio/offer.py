@@ -14,7 +14,8 @@ from adamo_vh.inference.players.outside import HUMAN
 from adamo_vh.inference.registry import is_remote
 from adamo_vh.perception import Labeling
 from adamo_vh.readable import readable
-from adamo_vh.session.builtin import figure_names, known_scenes, scene_title
+from adamo_vh.session.builtin import known_scenes, scene_title
+from adamo_vh.session.figures import figure_names
 
 BASELINE = "baseline"
 _PROVIDERS: Mapping[str, tuple[str, str]] = {
@@ -28,15 +29,22 @@ _PROVIDERS: Mapping[str, tuple[str, str]] = {
 class Offer:
     """What may be chosen; nothing that a page names is read as a path."""
 
-    def __init__(self, models: Sequence[str] = (), scenes: Sequence[Path] = ()) -> None:
+    def __init__(
+        self,
+        models: Sequence[str] = (),
+        scenes: Sequence[Path] = (),
+        figures: Sequence[Path] = (),
+    ) -> None:
         """Begin.
 
         Args:
             models: URIs that may be chosen beside the baseline and a person.
             scenes: Scene files that may be chosen beside the built-in scenes.
+            figures: Files of own figures, which stand before those that come with the package.
         """
         self._models = tuple(dict.fromkeys(models))
         self._scenes = {path.name: path for path in scenes}
+        self._figures = {path.name: path for path in figures}
 
     def scene(self, name: str) -> str:
         """The scene of a name: a built-in one, or the path of a file.
@@ -55,6 +63,24 @@ class Offer:
         """Names of the scenes."""
         return (*(scene.name for scene in known_scenes()), *self._scenes)
 
+    def figure(self, name: str) -> str:
+        """The figure of a name: one that comes with the package, or the path of a file.
+
+        Raises:
+            ConfigError: There is none of this name.
+        """
+        if name in self._figures:
+            return str(self._figures[name])
+        if name in figure_names():
+            return name
+        raise ConfigError(
+            f"There is no figure {_told(name)}. Figures: {', '.join(self.figures())}."
+        )
+
+    def figures(self) -> tuple[str, ...]:
+        """Names of the figures, the default first."""
+        return (*self._figures, *figure_names())
+
     def add_scene(self, path: Path) -> None:
         """Let a scene file be chosen too."""
         self._scenes[path.name] = path
@@ -66,9 +92,7 @@ class Offer:
             ConfigError: Something is not; says what is.
         """
         self.scene(scene)
-        if figure not in figure_names():
-            offer = ", ".join(figure_names())
-            raise ConfigError(f"There is no figure {_told(figure)}. Figures: {offer}.")
+        self.figure(figure)
         if task is not None and task.upper() not in [known.id for known in builtin_tasks()]:
             offer = ", ".join(known.id for known in builtin_tasks())
             raise ConfigError(f"There is no task {_told(task)}. Tasks: {offer}.")
@@ -91,7 +115,7 @@ class Offer:
             "models": list(self._models_told()),
             "profiles": list(PROFILES),
             "labelings": [labeling.value for labeling in Labeling],
-            "figures": list(figure_names()),
+            "figures": list(self.figures()),
         }
 
     def _title(self, name: str) -> str:

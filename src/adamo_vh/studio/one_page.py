@@ -16,9 +16,10 @@ from adamo_vh.errors import AdamoError, ConfigError
 from adamo_vh.files import data_url, write_whole
 from adamo_vh.record.run_folder import FRAMES
 from adamo_vh.record.trajectory import frame_type
-from adamo_vh.session.builtin import figure_glb, scene_glb
+from adamo_vh.session.builtin import scene_glb
+from adamo_vh.session.figures import figure_glb
 from adamo_vh.studio.files import PAGE
-from adamo_vh.studio.library import Run, scene_of
+from adamo_vh.studio.library import Run, figure_of, scene_of
 from adamo_vh.studio.messages import Message, Places
 from adamo_vh.studio.tracks import Track, track_of
 
@@ -73,7 +74,7 @@ def whole(track: Track, run: Run) -> Mapping[str, Any]:
     if hello["body"] is not None:
         try:
             scene = data_url(_MESH, scene_glb(*scene_of(run)))
-            figure = data_url(_MESH, figure_glb(hello["figure"]["name"]))
+            figure = data_url(_MESH, figure_glb(figure_of(run)))
         except AdamoError:
             scene = figure = ""
         hello = {

@@ -111,7 +111,7 @@ class Rooms:
         folder = reserve(self._out, f"{stamp}-{words}")
         places = Places(
             f"/studio/api/scenes/{quote(asked.scene, safe='')}.glb?variation={asked.variation}",
-            f"/studio/api/figures/{config.figure}.glb",
+            f"/studio/api/figures/{quote(asked.figure, safe='')}.glb",
         )
         name = secrets.token_urlsafe(9)
         room = Room(name, config, folder, places, approve=asked.approve)
@@ -130,7 +130,7 @@ class Rooms:
             None if asked.task else _FREE_TALK,
             task=asked.task,
             scene=self._offer.scene(asked.scene),
-            figure=asked.figure,
+            figure=self._offer.figure(asked.figure),
             labeling=asked.labeling,
             profile=asked.profile,
             model=asked.model,

@@ -12,6 +12,7 @@ from adamo_vh.errors import AdamoError
 from adamo_vh.record.run_folder import SCENE
 from adamo_vh.record.trajectory import Event, read_trajectory
 from adamo_vh.session.builtin import scene_title
+from adamo_vh.session.figures import recorded_figure
 from adamo_vh.session.posing import Posing
 from adamo_vh.session.runs import replay_episode
 from adamo_vh.studio import messages
@@ -74,6 +75,8 @@ class _Making:
 
     def execute(self) -> None:
         """Tell all events: with poses as far as they can be executed again, and without after."""
+        if lacks := recorded_figure(self.folder, self.manifest, elsewhere=False).lacks:
+            self._say(lacks)
         if self.damaged:
             self._say(f"Some of the record cannot be read: {self.damaged[0]}")
         else:

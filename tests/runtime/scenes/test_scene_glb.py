@@ -16,7 +16,7 @@ from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.human.looks import load_figure
 from adamo_vh.runtime.scenes.glb import Drawn, scene_glb
 from adamo_vh.runtime.scenes.scene import load_scene
-from adamo_vh.session.builtin import figure_glb
+from adamo_vh.session.figures import figure_glb
 
 
 @cache

@@ -72,6 +72,19 @@ def is_own(variant: str) -> bool:
     return variant.lower().endswith(OWN)
 
 
+def identity(variant: str) -> str:
+    """What tells the looks of a figure from all others: its name, or the digest of its file.
+
+    Raises:
+        FileError: An own figure cannot be used.
+    """
+    if not is_own(variant):
+        return variant
+    from adamo_vh.runtime.human.own.reading import own_figure
+
+    return own_figure(Path(variant)).report.sha256
+
+
 def load_figure(variant: str = VARIANTS[0]) -> Figure:
     """Read a person from the package.
 

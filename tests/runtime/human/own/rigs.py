@@ -24,7 +24,7 @@ from adamo_vh.runtime.assets.glb_writing import (
 from adamo_vh.runtime.human.face import moving_face
 from adamo_vh.runtime.human.looks import Figure, Garment, load_figure
 from adamo_vh.runtime.human.rotations import about_x, about_z, quaternions
-from adamo_vh.runtime.human.skeleton import INDEX, JOINTS, PARENTS, REST, Pose, joint_frames
+from adamo_vh.runtime.human.skeleton import INDEX, JOINTS, PARENTS, REST, Pose
 
 _WORDS = {
     "pelvis": "hips", "spine": "spine", "chest": "chest", "neck": "neck", "head": "head",
@@ -151,29 +151,57 @@ def rig(told: Rig, who: str = "mara") -> bytes:
     return writer.file()
 
 
-def _posed(told: Rig) -> tuple[np.ndarray, np.ndarray]:
-    """(J, 3) places and (J, 3, 3) rotations of the joints, with the rig's own proportions."""
-    places, rotations = joint_frames(told.pose)
-    own = places.copy()
+def _rest(told: Rig) -> np.ndarray:
+    """(J, 3) the joints of the rig in our rest pose, with its own proportions."""
+    own = REST.copy()
     for j, parent in enumerate(PARENTS):
         if parent >= 0:
             longer = told.offsets.get(JOINTS[j].removesuffix("_l").removesuffix("_r"), 1.0)
-            own[j] = own[parent] + longer * (places[j] - places[parent])
-    low = own[[INDEX["foot_l"], INDEX["foot_r"]], 2].min() - REST[INDEX["foot_l"], 2]
-    own[:, 2] -= low
-    rotations = rotations.copy()
-    for joint in ("head", "eyelids"):
-        rotations[INDEX[joint]] *= told.head
-    return own, rotations
+            longer *= told.head if JOINTS[j] == "eyelids" else 1.0
+            own[j] = own[parent] + longer * (REST[j] - REST[parent])
+    own[:, 2] += REST[INDEX["foot_l"], 2] - own[INDEX["foot_l"], 2]
+    return own
+
+
+def _shapes(told: Rig) -> np.ndarray:
+    """(J, 3, 3) how what hangs on each joint is stretched."""
+    found = np.tile(np.eye(3), (len(JOINTS), 1, 1))
+    for j, parent in enumerate(PARENTS):
+        name = JOINTS[j].removesuffix("_l").removesuffix("_r")
+        if parent < 0 or name not in told.offsets or name in ("clavicle", "upper_arm"):
+            continue
+        line = REST[j] - REST[parent]
+        line = line / np.linalg.norm(line)
+        found[parent] += (told.offsets[name] - 1.0) * np.outer(line, line)
+    for name in ("head", "eyelids"):
+        found[INDEX[name]] = told.head * np.eye(3)
+    return found
+
+
+def _shaped(told: Rig, garment: Garment) -> np.ndarray:
+    """(N, 3) vertices of a garment in the rig's own proportions."""
+    rest, shapes = _rest(told), _shapes(told)
+    arms = garment.vertices[:, None] - REST[garment.bone_ids]
+    moved = np.einsum("nbij,nbj->nbi", shapes[garment.bone_ids], arms) + rest[garment.bone_ids]
+    return np.asarray((moved * garment.weights[..., None]).sum(axis=1))
 
 
 def _frames(told: Rig) -> tuple[np.ndarray, np.ndarray]:
-    """(J, 4, 4) world_from_bone in the file's units, and (J, 4, 4) of the standard rest pose."""
-    places, rotations = _posed(told)
+    """(J, 4, 4) world_from_bone in the file's units, and (J, 4, 4) of the rest pose."""
+    rest = _rest(told)
     ours = np.tile(np.eye(4), (len(JOINTS), 1, 1))
-    ours[:, :3, 3] = REST
-    posed = np.tile(np.eye(4), (len(JOINTS), 1, 1))
-    posed[:, :3, :3], posed[:, :3, 3] = rotations, places
+    ours[:, :3, 3] = rest
+    posed = ours.copy()
+    for j, parent in enumerate(PARENTS):
+        turn = told.pose.rotations[j]
+        if parent < 0:
+            posed[j, :3, :3] = turn
+            posed[j, :3, 3] += told.pose.pelvis_shift
+        else:
+            posed[j, :3, :3] = posed[parent, :3, :3] @ turn
+            posed[j, :3, 3] = posed[parent, :3, 3] + posed[parent, :3, :3] @ (
+                rest[j] - rest[parent]
+            )
     into = np.eye(4)
     into[:3, :3] = told.axes * told.scale * told.size
     return into @ posed, ours
@@ -298,7 +326,7 @@ def _mesh(
     bones = np.vectorize(place.get)(garment.bone_ids)
     bones = np.where(garment.weights > 0, bones, 0)
     attributes = {
-        "POSITION": writer.accessor(garment.vertices, "VEC3", FLOAT, VERTICES),
+        "POSITION": writer.accessor(_shaped(told, garment), "VEC3", FLOAT, VERTICES),
         "NORMAL": writer.accessor(garment.normals, "VEC3", FLOAT, VERTICES),
         "TEXCOORD_0": writer.accessor(garment.uvs * [1, -1] + [0, 1], "VEC2", FLOAT, VERTICES),
     }

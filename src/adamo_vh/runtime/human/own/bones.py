@@ -24,8 +24,6 @@ OPTIONAL: Mapping[str, str] = {
     "rightToes": "feet do not roll over their toes",
     "leftFingers": "the hand does not close",
     "rightFingers": "the hand does not close",
-    "leftEye": "the eyes look ahead, with the head",
-    "rightEye": "the eyes look ahead, with the head",
 }
 """What it means that a bone is missing."""
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
