@@ -100,13 +100,15 @@ def first_picture(url: str, label: str) -> None:
     urllib.request.urlopen(delete).close()
 
 
-def served(measure: Callable[[str], None]) -> None:
-    """Measure at a studio on this machine."""
+def served(measure: Callable[[str], None], runs: Path | None = None) -> None:
+    """Measure at a studio on this machine, which shows some runs."""
     with tempfile.TemporaryDirectory() as folder:
         offer = Offer()
         out = Path(folder)
         rooms = Rooms(out, offer, RoomTerms(resolution="640x360"))
-        studio = Studio(offer, Library([out]), rooms, Meshes(), Editor(out / "scenes", offer))
+        studio = Studio(
+            offer, Library([runs or out]), rooms, Meshes(), Editor(out / "scenes", offer)
+        )
         host = Host(out / "served", Terms())
         with serving(host, faces=(studio_face(studio),)) as url:
             measure(url)

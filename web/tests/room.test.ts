@@ -1,7 +1,7 @@
 import { Box3, BoxGeometry, Mesh, MeshBasicMaterial, Quaternion, Vector3 } from "three";
 import { expect, test } from "vitest";
 import { boxAt } from "../src/mind/frame.ts";
-import { openness } from "../src/view/ambience.ts";
+import { Ambience } from "../src/view/ambience.ts";
 import { halfExtents } from "../src/view/contact.ts";
 import { layOut } from "../src/view/overlay.ts";
 import { LEVELS, Quality } from "../src/view/quality.ts";
@@ -41,10 +41,11 @@ test("nobody stands in furniture or in a wall", () => {
 
 test("corners are less open than the middle", () => {
   const voxels = room();
-  const data = openness(voxels).image.data as Uint8Array;
-  const at = (x: number, y: number, z: number): number => data[voxels.index(x, y, z)] ?? 0;
-  expect(at(0, 0, 1.2)).toBeGreaterThan(240);
-  expect(at(-1.95, -1.95, 0.05)).toBeLessThan(100);
+  const ambience = new Ambience(voxels);
+  expect(ambience.at(0, 0, 1.2)).toBeGreaterThan(0.94);
+  expect(ambience.at(-1.95, -1.95, 0.05)).toBeLessThan(0.4);
+  const all = ambience.uniforms.uOpenness.value.image.data as Uint8Array;
+  expect(all[voxels.index(0, 0, 1.2)]).toBe(ambience.of(20, 20, 12));
 });
 
 test("labels never cover each other", () => {

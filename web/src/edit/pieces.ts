@@ -18,7 +18,7 @@ import {
   PlaneGeometry,
 } from "three";
 import { loadGltf, meshesIn, nodesByName } from "../view/loading.ts";
-import { looks } from "../view/room.ts";
+import { mattLook } from "../view/surfaces.ts";
 import { meshOfAsset } from "./remote.ts";
 import type { FloorArea, SceneData, Three } from "./scene.ts";
 
@@ -56,7 +56,7 @@ export class Assets {
       const { scene } = await loadGltf(meshOfAsset(name));
       scene.rotation.x = Math.PI / 2; // glTF has Y up.
       for (const mesh of meshesIn(scene)) {
-        mesh.material = looks(mesh.material as Material, null, true);
+        mesh.material = mattLook(mesh.material as Material);
         mesh.castShadow = mesh.receiveShadow = true;
       }
       this.made.set(name, new Group().add(scene));
@@ -75,7 +75,7 @@ export async function loadShell(url: string, room: SceneData["room"]): Promise<O
     if (!shell) return bareFloor(room);
     shell.removeFromParent();
     for (const mesh of meshesIn(shell)) {
-      const look = looks(mesh.material as Material, null, true).clone();
+      const look = mattLook(mesh.material as Material).clone();
       look.side = FrontSide; // The near walls are looked through.
       mesh.material = look;
       mesh.visible = !["ceiling", "outside"].includes(look.name);

@@ -1,10 +1,12 @@
 // The person: a skinned figure whose joints are set from the poses of the track.
 
+import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type Bone, Group, type Material, Matrix4, type Object3D, type SkinnedMesh, Vector3 } from "three";
-import type { Ambience } from "./ambience.ts";
 import { Face } from "./face.ts";
-import { bonesByName, loadGltf, nodesByName, skinnedIn } from "./loading.ts";
-import { looks } from "./room.ts";
+import { bonesByName, nodesByName, skinnedIn } from "./loading.ts";
+import type { Room } from "./room.ts";
+import { Skin } from "./skin.ts";
+import { fullLook, surface } from "./surfaces.ts";
 import type { Moment } from "../track/track.ts";
 
 /** Parts of the head, which her own eyes do not see. */
@@ -16,8 +18,10 @@ export class Figure {
   readonly group = new Group();
   readonly meshes: SkinnedMesh[];
   readonly face: Face;
+  /** The same body for the plain look. */
+  private readonly skins: Skin[];
+  private isFull = false;
   private readonly head: Bone | undefined;
-  private readonly headMeshes: Object3D[];
   private readonly feet: Bone[];
   private readonly lids: number;
 
@@ -26,11 +30,9 @@ export class Figure {
     scene: Object3D,
     private readonly bones: (Bone | undefined)[],
     byName: Map<string, Bone>,
-    ambience: Ambience,
-    isPlain: boolean,
+    private readonly room: Room,
   ) {
     this.meshes = skinnedIn(scene);
-    this.headMeshes = this.meshes.filter((mesh) => HEAD.includes((mesh.material as Material).name));
     this.face = new Face(this.meshes.filter((mesh) => mesh.morphTargetDictionary));
     this.lids = bones.indexOf(byName.get("eyelids"));
     this.head = byName.get("head");
@@ -40,16 +42,16 @@ export class Figure {
       mesh.castShadow = mesh.receiveShadow = true;
       const { name } = mesh.material as Material;
       if (["lids", "brows", "lashes", "eyes"].includes(name)) mesh.castShadow = false;
-      mesh.material = looks(mesh.material as Material, ambience, isPlain);
     }
-    this.group.add(root, ...this.meshes);
+    this.skins = this.meshes.map((mesh) => new Skin(mesh, room.plain));
+    for (const mesh of this.meshes) mesh.material = fullLook(surface(mesh.material as Material), room.ambience);
+    this.group.add(root, ...this.meshes, ...this.skins.map((skin) => skin.shown));
   }
 
-  static async load(url: string, joints: readonly string[], ambience: Ambience, isPlain: boolean): Promise<Figure> {
-    const gltf = await loadGltf(url);
+  static of(gltf: GLTF, joints: readonly string[], room: Room): Figure {
     const root = nodesByName(gltf).get("human") ?? gltf.scene;
     const byName = bonesByName(gltf);
-    return new Figure(root, gltf.scene, joints.map((joint) => byName.get(joint)), byName, ambience, isPlain);
+    return new Figure(root, gltf.scene, joints.map((joint) => byName.get(joint)), byName, room);
   }
 
   pose(moment: Moment): void {
@@ -68,9 +70,26 @@ export class Figure {
     this.group.updateMatrixWorld(true);
   }
 
-  /** Show or leave out the head: whoever looks out of it does not see it. */
-  showHead(on: boolean): void {
-    for (const mesh of this.headMeshes) mesh.visible = on;
+  /** Give her the full look, or the plain one. */
+  dress(isFull: boolean): void {
+    this.isFull = isFull;
+  }
+
+  /**
+   * Get ready for a picture.
+   * @param isWhole Whether her head is seen: whoever looks out of it does not see it.
+   */
+  prepare(isWhole: boolean): void {
+    const show = (mesh: Object3D, isWorn: boolean, { name }: Material): void => {
+      mesh.visible = isWorn && (isWhole || !HEAD.includes(name));
+    };
+    for (const mesh of this.meshes) show(mesh, this.isFull, mesh.material as Material);
+    for (const { shown } of this.skins) show(shown, !this.isFull, shown.material as Material);
+    if (this.isFull) return;
+    const { x, y } = this.root.position;
+    const light = this.room.plain.around(x, y);
+    for (const skeleton of new Set(this.meshes.map((mesh) => mesh.skeleton))) skeleton.update();
+    for (const skin of this.skins) if (skin.shown.visible) skin.update(light);
   }
 
   /** Where her eyes are and which way they look, in the room. */

@@ -28,8 +28,11 @@ function placed(mesh: Mesh, names: readonly string[]): BufferGeometry {
   return geometry.applyMatrix4(mesh.matrixWorld);
 }
 
-/** One mesh for each material of some meshes. */
-export function merged(meshes: readonly Mesh[]): Object3D {
+/**
+ * One mesh for each material of some meshes.
+ * @param finer What to do to the geometry of each before.
+ */
+export function merged(meshes: readonly Mesh[], finer: (mesh: Mesh, geometry: BufferGeometry) => BufferGeometry): Object3D {
   const group = new Object3D();
   const byLooks = new Map<string, { material: Material; meshes: Mesh[]; names: string[] }>();
   for (const mesh of meshes) {
@@ -41,7 +44,7 @@ export function merged(meshes: readonly Mesh[]): Object3D {
     else byLooks.set(key, { material, meshes: [mesh], names });
   }
   for (const { material, meshes: alike, names } of byLooks.values()) {
-    const parts = alike.map((mesh) => placed(mesh, names));
+    const parts = alike.map((mesh) => finer(mesh, placed(mesh, names)));
     const geometry = mergeGeometries(parts, false);
     if (geometry) group.add(new Mesh(geometry, material));
   }

@@ -14,10 +14,10 @@ export const LEVELS: readonly Level[] = [
   { pixels: 1, shadow: 2048 },
 ];
 
-const SLOW_MS = 80;
-const FAST_MS = 24;
-const CALM = 8;
+/** A movement that is slower than this gets coarser pictures, and one that is faster sharper ones; milliseconds a picture. */
+const PACE = { card: { slow: 80, fast: 24 }, processor: { slow: 115, fast: 70 } } as const;
 /** So many frames are looked at before the level changes again. */
+const CALM = 8;
 
 export class Quality {
   level: number;
@@ -25,11 +25,13 @@ export class Quality {
   frameMs = 0;
   private count = 0;
   private ceiling: number;
+  private readonly pace: { slow: number; fast: number };
 
-  /** Where a processor draws, it begins coarse, and gets no finer than that allows. */
+  /** Where a processor draws, it begins coarser, and movements may be slower for the sake of their sharpness. */
   constructor(isPlain = false) {
-    this.level = isPlain ? 1 : LEVELS.length - 1;
+    this.level = isPlain ? 2 : LEVELS.length - 1;
     this.ceiling = LEVELS.length - 1;
+    this.pace = isPlain ? PACE.processor : PACE.card;
   }
 
   /** Take note of the time since the last picture. Returns whether the level changed. */
@@ -37,8 +39,8 @@ export class Quality {
     if (ms > 1000) return false;
     this.frameMs = this.frameMs === 0 ? ms : this.frameMs * 0.8 + ms * 0.2;
     if (++this.count < CALM) return false;
-    if (this.frameMs > SLOW_MS && this.level > 0) return this.go(this.level - 1, true);
-    if (this.frameMs < FAST_MS && this.level < this.ceiling) return this.go(this.level + 1, false);
+    if (this.frameMs > this.pace.slow && this.level > 0) return this.go(this.level - 1, true);
+    if (this.frameMs < this.pace.fast && this.level < this.ceiling) return this.go(this.level + 1, false);
     return false;
   }
 

@@ -1,27 +1,30 @@
 // The room: walls, furniture and things, from one GLB. Frame: z up, metres, as the server has it.
 
-import {
-  Box3,
-  DataTexture,
-  Group,
-  LinearMipmapNearestFilter,
-  type Material,
-  type Mesh,
-  MeshBasicMaterial,
-  MeshLambertMaterial,
-  type MeshStandardMaterial,
-  type Object3D,
-  Vector3,
-} from "three";
+import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
+import { Box3, BufferGeometry, Group, type Material, type Matrix4, type Mesh, type Object3D, Vector3 } from "three";
 import type { Placed, SceneShape } from "../protocol.ts";
-import { type Ambience, ambienceOf, dimBy } from "./ambience.ts";
-import { isStandard, loadGltf, meshesIn, nodesByName, type Progress } from "./loading.ts";
+import { Ambience } from "./ambience.ts";
+import { Brightness } from "./brightness.ts";
+import { meshesIn, nodesByName } from "./loading.ts";
 import { merged } from "./merging.ts";
+import { Plain } from "./plain.ts";
+import { split } from "./splitting.ts";
+import { fullLook, SHADES, surface } from "./surfaces.ts";
 import { Voxels } from "./voxels.ts";
 
-const WHITE = new DataTexture(new Uint8Array([255, 255, 255, 255]), 1, 1);
-WHITE.needsUpdate = true;
-const SHADES = ["shade", "glow"];
+/** The longest edge where shades are to be seen within a surface. */
+const FINE_M = 0.2;
+/** What is moved further than this, metres, or turned so, is lit anew. */
+const LIT_AGAIN = 0.04;
+const SHELL = ["walls", "ceiling", "parquet", "outside"];
+
+/** What a mesh is made of in the file, and how that is drawn. */
+interface Looks {
+  mesh: Mesh;
+  own: Material;
+  plain: Material;
+  full: Material;
+}
 
 export class Room {
   readonly group = new Group();
@@ -31,11 +34,14 @@ export class Room {
   readonly window: Vector3 | null;
   /** What the pointer can meet that does not move. */
   readonly fixed: Mesh[];
+  readonly plain: Plain;
+  private readonly looks: Looks[];
+  /** Where things were when their light was worked out. */
+  private readonly lit = new Map<Object3D, Matrix4>();
 
   private constructor(
     readonly scene: SceneShape,
     nodes: Map<string, Object3D>,
-    isPlain: boolean,
   ) {
     const shell = nodes.get("room");
     const pieces = scene.furniture.map((piece) => nodes.get(piece.node)).filter((node) => node !== undefined);
@@ -45,13 +51,17 @@ export class Room {
       new Box3(new Vector3(scene.x_min, scene.y_min, 0), new Vector3(scene.x_max, scene.y_max, scene.height_m)),
     );
     for (const mesh of pieces.flatMap(meshesIn)) if (!isFlat(mesh)) this.voxels.add(mesh);
-    this.ambience = ambienceOf(this.voxels);
-    const joined = merged(still);
+    this.ambience = new Ambience(this.voxels);
+    this.plain = new Plain(new Brightness(scene, this.window, this.voxels, this.ambience));
+    // Light is told at corners: the floor, and what lies on it, show the shade of what stands there.
+    const joined = merged(still, (mesh, geometry) => (isFlat(mesh) || isFloor(mesh) ? split(geometry, FINE_M) : geometry));
     this.fixed = meshesIn(joined);
     for (const mesh of this.fixed) {
       mesh.receiveShadow = true;
       const { name } = mesh.material as Material;
-      mesh.castShadow = !["walls", "ceiling", "parquet", "outside", ...SHADES].includes(name);
+      mesh.castShadow = ![...SHELL, ...SHADES].includes(name);
+      // What stands before the walls is drawn before them.
+      mesh.renderOrder = SHELL.includes(name) ? 1 : 0;
       mesh.matrixAutoUpdate = false;
     }
     this.group.add(joined);
@@ -61,22 +71,47 @@ export class Room {
       node.userData.objectId = object.id;
       for (const mesh of meshesIn(node)) {
         mesh.receiveShadow = true;
-        // Small things have their contact shadow; a processor has no time for a second one.
-        mesh.castShadow = !isPlain && (mesh.material as Material).name !== "glass";
+        mesh.castShadow = (mesh.material as Material).name !== "glass";
         mesh.userData.objectId = object.id;
       }
       this.things.set(object.id, node);
       this.group.add(node);
     }
-    for (const mesh of meshesIn(this.group)) mesh.material = looks(mesh.material as Material, this.ambience, isPlain);
+    this.looks = meshesIn(this.group).map((mesh) => this.look(mesh, surface(mesh.material as Material)));
   }
 
-  static async load(url: string, scene: SceneShape, isPlain: boolean, progress?: Progress): Promise<Room> {
-    const gltf = await loadGltf(url, progress);
+  private look(mesh: Mesh, own: Material): Looks {
+    const isStill = this.fixed.includes(mesh);
+    // Two of a kind share their shape, but not their light.
+    if (!isStill) mesh.geometry = sharing(mesh.geometry);
+    if (own.name === "outside") this.plain.shine(mesh.geometry);
+    else this.plain.light(mesh.geometry, own, mesh.matrixWorld, isStill);
+    return { mesh, own, plain: this.plain.look(own), full: fullLook(own, this.ambience) };
+  }
+
+  /** Give everything its full look, or its plain one. */
+  dress(isFull: boolean): void {
+    for (const { mesh, plain, full } of this.looks) mesh.material = isFull ? full : plain;
+  }
+
+  /** Light things anew that were moved, for the plain look. */
+  relight(): void {
+    for (const { mesh, own } of this.looks) {
+      const thing = this.things.get(mesh.userData.objectId as number);
+      if (!thing?.visible) continue;
+      const before = this.lit.get(mesh);
+      thing.updateWorldMatrix(false, true);
+      if (before && isNear(before, mesh.matrixWorld)) continue;
+      this.lit.set(mesh, mesh.matrixWorld.clone());
+      if (before) this.plain.light(mesh.geometry, own, mesh.matrixWorld, false);
+    }
+  }
+
+  static of(gltf: GLTF, scene: SceneShape): Room {
     const nodes = nodesByName(gltf);
     nodes.get("world")?.quaternion.identity();
     gltf.scene.updateMatrixWorld(true);
-    return new Room(scene, nodes, isPlain);
+    return new Room(scene, nodes);
   }
 
   place(id: number, at: Placed): void {
@@ -87,6 +122,18 @@ export class Room {
   }
 }
 
+/** The same shape, to which something of its own may be added. */
+function sharing(geometry: BufferGeometry): BufferGeometry {
+  const shape = new BufferGeometry();
+  for (const [name, attribute] of Object.entries(geometry.attributes)) shape.setAttribute(name, attribute);
+  shape.setIndex(geometry.getIndex());
+  return shape;
+}
+
+/** Whether a thing stands almost as before, as far as light goes. */
+const isNear = (a: Matrix4, b: Matrix4): boolean =>
+  a.elements.every((value, i) => Math.abs(value - (b.elements[i] ?? 0)) < LIT_AGAIN);
+
 /** Whether it lies on the floor or hangs on a wall so flat that nothing can be behind it. */
 function isFlat(mesh: Mesh): boolean {
   mesh.geometry.computeBoundingBox();
@@ -94,52 +141,9 @@ function isFlat(mesh: Mesh): boolean {
   return size !== undefined && size.z < 0.03;
 }
 
+const isFloor = (mesh: Mesh): boolean => (mesh.material as Material).name === "parquet";
+
 function windowOf(meshes: readonly Mesh[]): Vector3 | null {
   const pane = meshes.find((mesh) => (mesh.material as Material).name === "outside");
   return pane ? new Box3().setFromObject(pane).getCenter(new Vector3()) : null;
-}
-
-const made = new WeakMap<Material, Material>();
-
-/** The look of a material of the file under this light; plain where a processor draws. */
-export function looks(material: Material, ambience: Ambience | null, isPlain: boolean): Material {
-  const known = made.get(material);
-  if (known) return known;
-  const look = material.name === "outside" ? outside(material) : surface(material, ambience, isPlain);
-  look.name = material.name;
-  made.set(material, look);
-  return look;
-}
-
-function outside(material: Material): Material {
-  const map = "map" in material ? (material as MeshStandardMaterial).map : null;
-  return new MeshBasicMaterial({ map, toneMapped: false });
-}
-
-const ROUGHNESS: Record<string, number> = { parquet: 0.52, walls: 0.95, glass: 0.12, head: 0.62, hands: 0.62, eyes: 0.15, hair: 0.6 };
-
-function surface(material: Material, ambience: Ambience | null, isPlain: boolean): Material {
-  if (!isStandard(material)) return material;
-  const { name } = material;
-  material.roughness = ROUGHNESS[name] ?? material.roughness;
-  if (name === "parquet") material.color.setScalar(0.8);
-  if (name === "glass") material.transparent = true;
-  if (SHADES.includes(name)) {
-    material.emissive.copy(material.color).multiplyScalar(0.55);
-    material.map = WHITE; // One program less to compile.
-  }
-  if (material.map) {
-    material.map.anisotropy = isPlain ? 1 : 4;
-    if (isPlain) material.map.minFilter = LinearMipmapNearestFilter;
-  }
-  if (name === "glass") material.depthWrite = false;
-  const look = isPlain ? plain(material) : material;
-  if (ambience) dimBy(look, ambience);
-  return look;
-}
-
-/** Without reflections: a fraction of the work a pixel. */
-function plain(material: MeshStandardMaterial): MeshLambertMaterial {
-  const { map, color, emissive, transparent, depthWrite, vertexColors, side } = material;
-  return new MeshLambertMaterial({ map, color, emissive, transparent, depthWrite, vertexColors, side });
 }

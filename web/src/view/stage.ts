@@ -1,18 +1,22 @@
 // Draws the room: one renderer, one loop, a picture only when something changed.
 
-import { ACESFilmicToneMapping, BasicShadowMap, Color, PCFShadowMap, Scene, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
+import { ACESFilmicToneMapping, Color, PCFShadowMap, Scene, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
 import type { Hello } from "../protocol.ts";
 import type { Moment } from "../track/track.ts";
 import { Cameras } from "./cameras.ts";
 import { ContactShadows } from "./contact.ts";
 import { Figure } from "./figure.ts";
-import { isSoftware, type Lights, lightRoom, surroundings } from "./lights.ts";
-import type { Progress } from "./loading.ts";
+import { type Lights, lightRoom, surroundings } from "./lights.ts";
+import { loadGltf, type Progress } from "./loading.ts";
+import { EXPOSURE } from "./coding.ts";
+import { isSoftware } from "./machine.ts";
 import { Quality } from "./quality.ts";
 import { Room } from "./room.ts";
 
 export interface Stats {
   frames: number;
+  /** From the opening of the page to the first picture; 0 before. */
+  firstMs: number;
   frameMs: number;
   scriptMs: number;
   calls: number;
@@ -24,8 +28,6 @@ const WARM_FRAMES = 4;
 const REFLECTED = 0.8;
 /** After so long without a change the picture is drawn sharp. */
 const STILL_MS = 350;
-/** Where a processor draws, shadows follow this often. */
-const SHADOWS_MS = 220;
 
 /** Is called before each picture; returns whether something changed that the picture shows. */
 export type Tick = (seconds: number) => boolean;
@@ -33,7 +35,7 @@ export type Tick = (seconds: number) => boolean;
 export class Stage {
   readonly scene = new Scene();
   readonly quality: Quality;
-  readonly stats: Stats = { frames: 0, frameMs: 0, scriptMs: 0, calls: 0, triangles: 0, pixels: "" };
+  readonly stats: Stats = { frames: 0, firstMs: 0, frameMs: 0, scriptMs: 0, calls: 0, triangles: 0, pixels: "" };
   private readonly lights: Lights;
   private readonly contact: ContactShadows;
   private readonly afterwards: (() => void)[] = [];
@@ -41,7 +43,8 @@ export class Stage {
   private isSharp = true;
   private drawnAt = 0;
   private shadowsLate = true;
-  private shadowsAt = 0;
+  /** Whether the full look is there. */
+  private isFull = false;
   private dirty = true;
   private last = 0;
   private drewLast = false;
@@ -58,16 +61,15 @@ export class Stage {
     private readonly isPlain: boolean,
   ) {
     this.quality = new Quality(isPlain);
-    this.lights = lightRoom(hello.scene, room.window, isPlain);
-    this.contact = new ContactShadows(hello.scene.objects);
+    this.lights = lightRoom(hello.scene, room.window);
+    this.contact = new ContactShadows(hello.scene.objects, room.plain);
     this.scene.background = new Color(0x1a1714);
-    if (!isPlain) {
-      this.scene.environment = surroundings(renderer, room.window ?? new Vector3(1, 0, 0));
-      this.scene.environmentIntensity = REFLECTED;
-    }
-    this.scene.add(room.group, figure.group, this.lights.group, this.contact.mesh);
+    this.scene.environmentIntensity = REFLECTED;
+    this.dress(false);
+    this.scene.add(room.group, figure.group, this.contact.mesh);
   }
 
+  /** Get ready to draw: plainly at once, and fully as soon as that is prepared, unless a processor draws. */
   static async open(
     canvas: HTMLCanvasElement,
     hello: Hello,
@@ -75,22 +77,42 @@ export class Stage {
     tick: Tick,
     progress?: Progress,
   ): Promise<Stage> {
+    const loading = Promise.all([loadGltf(urls.scene, progress), loadGltf(urls.figure)]);
     const asked = new URLSearchParams(location.search).get("quality");
-    const isPlain = asked ? asked === "plain" : isSoftware();
+    const isPlain = isSoftware() ? asked !== "full" : asked === "plain";
     const renderer = new WebGLRenderer({ canvas, antialias: !isPlain, powerPreference: "high-performance" });
     renderer.outputColorSpace = SRGBColorSpace;
     renderer.toneMapping = ACESFilmicToneMapping;
-    renderer.toneMappingExposure = 1.05;
+    renderer.toneMappingExposure = EXPOSURE;
     renderer.shadowMap.enabled = true;
-    // Soft edges cost a processor more than all the rest.
-    renderer.shadowMap.type = isPlain ? BasicShadowMap : PCFShadowMap;
+    renderer.shadowMap.type = PCFShadowMap;
     renderer.info.autoReset = false;
-    const room = await Room.load(urls.scene, hello.scene, isPlain, progress);
-    const figure = await Figure.load(urls.figure, hello.joints, room.ambience, isPlain);
+    const [scene, person] = await loading;
+    const room = Room.of(scene, hello.scene);
+    const figure = Figure.of(person, hello.joints, room);
     const cameras = new Cameras(hello.scene, hello.body, room.voxels);
-    const stage = new Stage(renderer, hello, room, figure, cameras, tick, isPlain);
-    await renderer.compileAsync(stage.scene, cameras.camera);
-    return stage;
+    return new Stage(renderer, hello, room, figure, cameras, tick, isPlain);
+  }
+
+  private dress(isFull: boolean): void {
+    this.isFull = isFull;
+    this.room.dress(isFull);
+    this.figure.dress(isFull);
+    this.contact.isHers = !isFull;
+  }
+
+  /** Prepare reflections and shadows while the plain picture is shown, then draw with them. */
+  private async enrich(): Promise<void> {
+    const { renderer, scene, cameras, room } = this;
+    scene.environment = surroundings(renderer, room.window ?? new Vector3(1, 0, 0));
+    scene.add(this.lights.group);
+    room.dress(true);
+    const ready = renderer.compileAsync(scene, cameras.camera);
+    room.dress(false);
+    await ready;
+    this.dress(true);
+    if (this.moment) this.show(this.moment);
+    room.plain.close();
   }
 
   /** Called after each picture: for what lies over it, e.g. labels. */
@@ -111,6 +133,7 @@ export class Stage {
     if (moment.lights !== this.brightness) {
       this.brightness = moment.lights;
       this.lights.dim(moment.lights);
+      this.room.plain.dim(moment.lights);
       this.scene.environmentIntensity = REFLECTED * (0.2 + 0.8 * moment.lights);
     }
     this.figure.pose(moment);
@@ -133,8 +156,8 @@ export class Stage {
   /** Draw with a share of the screen's own pixels. */
   private setPixels(share: number): void {
     const canvas = this.renderer.domElement;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * share);
-    this.renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
+    // Once for all: a processor that draws takes its time for each new size.
+    this.renderer.setDrawingBufferSize(canvas.clientWidth, canvas.clientHeight, Math.min(devicePixelRatio, 2) * share);
     this.stats.pixels = `${canvas.width}x${canvas.height}`;
     this.isSharp = share >= 1;
   }
@@ -174,7 +197,8 @@ export class Stage {
     const spent = performance.now() - begin;
     const { stats } = this;
     // The first pictures wait for programs to be compiled: they say nothing about the others.
-    if (++stats.frames <= WARM_FRAMES) return;
+    if (++stats.frames === 1) this.afterFirst();
+    if (stats.frames <= WARM_FRAMES) return;
     stats.scriptMs = stats.scriptMs ? stats.scriptMs * 0.9 + spent * 0.1 : spent;
     if (this.drewLast) {
       stats.frameMs = stats.frameMs ? stats.frameMs * 0.85 + since * 0.15 : since;
@@ -183,15 +207,22 @@ export class Stage {
     this.drewLast = true;
   }
 
+  private afterFirst(): void {
+    // By the next picture the first one is on the screen.
+    requestAnimationFrame(() => {
+      this.stats.firstMs = performance.now();
+      if (!this.isPlain) void this.enrich();
+    });
+  }
+
   private draw(): void {
     const { renderer, cameras, stats } = this;
-    const now = performance.now();
-    if (this.shadowsLate && (!this.isPlain || now - this.shadowsAt > Math.max(SHADOWS_MS, this.stats.frameMs * 4))) {
+    if (!this.isFull) this.room.relight();
+    else if (this.shadowsLate) {
       this.lights.refresh();
       this.shadowsLate = false;
-      this.shadowsAt = now;
     }
-    this.figure.showHead(cameras.kind !== "eyes");
+    this.figure.prepare(cameras.kind !== "eyes");
     renderer.info.reset();
     renderer.render(this.scene, cameras.camera);
     stats.calls = renderer.info.render.calls;
