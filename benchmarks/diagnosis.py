@@ -7,14 +7,13 @@ Scene, labeling, variation and way may be repeated. Each way is played in so man
 fits, of each scene, variation and labeling. The rules were written on the scenes as they are
 (variation 0); test variations, from 1000, show what they are worth elsewhere. What the player was
 built to do wrong is what the diagnosis should say. With `--labelled`, natural failures are played
-instead, and what is expected was told by a person who read them before any rule did:
-`labelled.tsv`.
+again instead, call by call, and what is expected was told by a person who read them before any rule
+did: `labelled.jsonl`. One that does not end as it did when it was read is named and not counted.
 """
 
 from __future__ import annotations
 
 import argparse
-import csv
 import itertools
 import json
 import random
@@ -38,9 +37,7 @@ from adamo_vh.session.explaining import explain_run
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))  # As a file it stands in no package.
 from benchmarks.failing import WAYS, Player, Way
-
-LABELLED = Path(__file__).with_name("labelled.tsv")
-"""Natural failures: scene, labeling, task and player, the code, and a sentence of reason."""
+from benchmarks.labelled import difference, end_of, read_labelled
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,22 +73,42 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     trials: list[Trial] = []
+    changed: list[str] = []
     with tempfile.TemporaryDirectory() as folder:
         out = arguments.out or Path(folder)
-        scenes = arguments.scene or ["s1", "s2"]
-        for scene, variation in itertools.product(scenes, arguments.variation or [0]):
+        for scene, variation in _places(arguments):
             engine = adamo_vh.create_engine(scene, variation=variation)
             played = _labelled if arguments.labelled else _played
             for trial in played(engine, out, arguments):
+                if isinstance(trial, str):
+                    print(f"No longer the episode that was read: {trial}", file=sys.stderr)
+                    changed.append(trial)
+                    continue
                 trials.append(trial)
                 is_miss = trial.found is not trial.expected
                 if is_miss and arguments.misses:
                     print(f"{trial.name}: {trial.expected}, told {trial.found}\n  {trial.summary}")
             engine.close()
     if arguments.json:
-        print(json.dumps(_figures(trials)))
+        print(json.dumps({**_figures(trials), "changed": changed}))
     else:
-        _print(trials)
+        _print(trials, "labelled" if arguments.labelled else "built to fail by")
+        if changed:
+            print(f"{len(changed)} are no longer the episodes that were read, and are not counted.")
+
+
+def _places(arguments: argparse.Namespace) -> list[tuple[str, int]]:
+    """Scenes and variations to play in."""
+    if not arguments.labelled:
+        scenes = arguments.scene or ["s1", "s2"]
+        return list(itertools.product(scenes, arguments.variation or [0]))
+    places = {(episode.scene, episode.variation) for episode in read_labelled()}
+    return sorted(
+        (scene, variation)
+        for scene, variation in places
+        if scene in (arguments.scene or [scene])
+        and variation in (arguments.variation or [variation])
+    )
 
 
 def _played(engine: World, out: Path, arguments: argparse.Namespace) -> Iterator[Trial]:
@@ -137,33 +154,18 @@ def _explained(folder: Path, engine: World, result: EpisodeResult, expected: Cod
     return Trial(folder.name, expected, found.code, seconds, result.steps, found.summary)
 
 
-def _labelled(engine: World, out: Path, arguments: argparse.Namespace) -> Iterator[Trial]:
-    """Play the natural failures of a scene again: all their players are deterministic."""
-    with LABELLED.open(encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file, delimiter="\t") if row["code"]]
-    for row in rows:
-        if row["scene"] != engine.scene.name or (
-            arguments.labeling and row["labeling"] not in arguments.labeling
+def _labelled(engine: World, out: Path, arguments: argparse.Namespace) -> Iterator[Trial | str]:
+    """Play the natural failures of a scene again; a text says why one is another episode now."""
+    for episode in read_labelled():
+        if (episode.scene, episode.variation) != (engine.scene.name, engine.scene.variation) or (
+            arguments.labeling and episode.labeling not in arguments.labeling
         ):
             continue
-        kind, _, number = row["player"].partition(":")
-        settings: dict[str, Any] = {"resolution": "640x360"}
-        if kind == "blind":
-            settings["switches"] = {"pictures": "none"}
-        elif kind == "dim":
-            settings |= {"resolution": "96x64", "k": 3}
-        elif kind == "short":
-            settings["limits"] = Limits(max_steps=int(number))
-        folder = out / "-".join((row["scene"], row["labeling"], row["task"], kind, number or "0"))
-        result = adamo_vh.run_episode(
-            task=row["task"],
-            labeling=row["labeling"],
-            model=row["player"] if kind == "random" else "baseline",
-            engine=engine,
-            out=folder,
-            **settings,
-        )
-        if (trial := _explained(folder, engine, result, Code(row["code"]))) is not None:
+        folder = out / episode.name
+        result = episode.again(engine, out)
+        if change := difference(episode.end, end_of(episode, result, folder)):
+            yield f"{episode.name}: {change}"
+        elif (trial := _explained(folder, engine, result, episode.label)) is not None:
             yield trial
 
 
@@ -190,11 +192,11 @@ def _figures(trials: Sequence[Trial]) -> dict[str, Any]:
     }
 
 
-def _print(trials: Sequence[Trial]) -> None:
+def _print(trials: Sequence[Trial], title: str) -> None:
     figures = _figures(trials)
     kinds = [*map(str, FailureClass), "none"]
     counted = {(a, b): n for a, b, n in figures["classes"]}
-    print(f"\n{'built to fail by':<18}" + "".join(f"{kind:>12}" for kind in kinds) + "   recall")
+    print(f"\n{title:<18}" + "".join(f"{kind:>12}" for kind in kinds) + "   recall")
     for kind in kinds[:-1]:
         row = "".join(f"{counted.get((kind, other), 0):>12}" for other in kinds)
         print(f"{kind:<18}{row}   {figures['recall'].get(kind, 0):.2f}")

@@ -81,8 +81,21 @@ def load_script(path: str | Path) -> tuple[AIMessage, ...]:
         raise ConfigError(f"Script {error}") from error
     if not isinstance(entries, list):
         raise ConfigError(f"Script {path} must be a JSON list of entries, {_USAGE}.")
+    return read_script(entries, f"Script {path}")
+
+
+def read_script(entries: Sequence[Any], where: str) -> tuple[AIMessage, ...]:
+    """Read the replies of a script that is at hand as data.
+
+    Args:
+        entries: As in the list of a script file; see `load_script`.
+        where: Begins what is said of a wrong one.
+
+    Raises:
+        ConfigError: An entry is wrong: names it and the fix.
+    """
     return tuple(
-        _reply(entry, f"Script {path}, entry {number}", number)
+        _reply(entry, f"{where}, entry {number}", number)
         for number, entry in enumerate(entries, start=1)
     )
 
