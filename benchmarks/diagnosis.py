@@ -7,8 +7,8 @@ Scene, labeling, variation and way may be repeated. Each way is played in so man
 fits, of each scene, variation and labeling. The rules were written on the scenes as they are
 (variation 0); test variations, from 1000, show what they are worth elsewhere. What the player was
 built to do wrong is what the diagnosis should say. With `--labelled`, natural failures are played
-again instead, call by call, and what is expected was told by a person who read them before any rule
-did: `labelled.jsonl`. One that does not end as it did when it was read is named and not counted.
+again instead, call by call, and what is expected was written down by a reader before any rule saw
+them: `labelled.jsonl`. One that does not end as it did when it was read is named and not counted.
 """
 
 from __future__ import annotations

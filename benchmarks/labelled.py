@@ -1,4 +1,4 @@
-"""Failed episodes that a person has read and labelled, kept so that they can be played again.
+"""Failed episodes that were read and labelled by hand, kept so that they can be played again.
 
 `labelled.jsonl` holds one a line: how it was set up, what the player replied in each turn, how it
 ended, and the label: the code, and a sentence of reason. The player is not asked again: it decides
@@ -44,7 +44,7 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class Labelled:
-    """A failed episode, and why it failed in the eyes of a person."""
+    """A failed episode, and why it failed in the eyes of its reader."""
 
     scene: str
     variation: int

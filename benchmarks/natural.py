@@ -1,4 +1,4 @@
-"""Natural failures, played and told so that a person can label them.
+"""Natural failures, played and told so that they can be labelled by hand.
 
     python benchmarks/natural.py --scene s1 --labeling opaq --task T11 --player blind
         [--variation 1003] [--file benchmarks/labelled.jsonl]
@@ -57,6 +57,7 @@ PLAYERS: dict[str, dict[str, Any]] = {
 """Weakened players and how they are set up. All but `random` are the baseline: without pictures,
 with small ones, with little memory; `short:N` may take N steps, `shaky:N` drops things half a metre
 beside the place it means, and `distracted:N` makes every fourth call by lot (N is the seed)."""
+_NUMBERED = ("random", "short", "shaky", "distracted")
 _SHAKE_M = 0.5
 _DISTRACTED = 0.25
 
@@ -141,6 +142,9 @@ def _wanted(arguments: argparse.Namespace) -> Iterator[Labelled]:
         arguments.player,
     ):
         kind, _, number = player.partition(":")
+        if kind not in PLAYERS or (kind in _NUMBERED) is not number.isdigit():
+            names = (f"{name}:N" if name in _NUMBERED else name for name in PLAYERS)
+            raise SystemExit(f"There is no player {player!r}. Use one of {', '.join(names)}.")
         settings = dict(PLAYERS[kind])
         if kind == "short":
             settings["max_steps"] = int(number)

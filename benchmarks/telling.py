@@ -1,4 +1,4 @@
-"""A played episode in lines, for a person who is to say why it failed.
+"""A played episode in lines, for a reader who is to say why it failed.
 
 What was asked, each call with what is true of it and what came back, what of the task was in view,
 what the player concluded, and how it ended. Looks and walks in a row are told together.

@@ -68,6 +68,16 @@ CASES: dict[str, tuple[str, Sequence[Said], Code]] = {
     "outside the room": ("T4", [pick(57), *[drop(57, 40.0, 0.0)] * 4], Code.REFUSED),
     "nothing done": ("T8", [("Look", FLOOR_SPOT), DONE], Code.FALSE_CLAIM),
     "gives up": ("T8", [("Look", FLOOR_SPOT), "I cannot do that."], Code.GAVE_UP),
+    "one look is no search": (
+        "T3",
+        [("Walk", FLOOR_SPOT), ("Look", FLOOR_SPOT), "I cannot do that."],
+        Code.GAVE_UP,
+    ),
+    "two looks are": (
+        "T3",
+        [("Look", FLOOR_SPOT), ("Look", {"x": 1.0, "y": 2.0, "z": 0.5}), "I cannot do that."],
+        Code.NOT_RECOGNISED,
+    ),
     "one of two": ("T8", [pick(37), drop(37, -1.6, -1.0), DONE], Code.GOAL_FORGOTTEN),
     "dropped, then taken": ("T4", [drop(57, -1.6, -1.0), pick(57), DONE], Code.WRONG_ORDER),
     "put down again": ("T2", [pick(57), drop(57, -1.6, -1.0), DONE], Code.EXTRA_GOAL),

@@ -1,4 +1,4 @@
-"""The failures that a person has labelled: the file, and that one of them plays again as it was."""
+"""The failures that were labelled by hand: the file, and that one of them plays again as it was."""
 
 from __future__ import annotations
 

@@ -32,6 +32,8 @@ _FAILED = {
 _HALF = 0.5
 _REPEATS = 3
 """The same call into the same state so often is a loop."""
+_SEARCH = 2
+"""So many views elsewhere are a search; one is not."""
 _AT_M = 0.3
 """A gaze that ends this close to an object is at it."""
 _LATE = 3
@@ -123,7 +125,7 @@ def _at_a_limit(story: Story, object_id: int) -> Cause:
     if not story.listed(object_id):
         text = f"{name} was never found before the {limit}."
         return Cause(Code.NEVER_FOUND, story.last, text, object_id)
-    if not story.is_told_by_tag(object_id) and _searched_since(story, object_id):
+    if not story.is_told_by_tag(object_id) and _views_since(story, object_id) >= _SEARCH:
         text = f"{name} was in view, and the agent went on searching until the {limit}."
         return Cause(Code.NOT_RECOGNISED, story.last, text, object_id)
     return stopped_by_limit(story, object_id)
@@ -145,11 +147,11 @@ def stopped_by_limit(story: Story, object_id: int) -> Cause:
 def _ended_early(story: Story, object_id: int, number: int) -> Cause:
     name, answer, last = story.name(object_id), story.ended.answer, story.last
     claims = claims_success(story.manifest.config.instruction, answer) is True
-    searched = _searched_since(story, object_id)
-    if not story.listed(object_id) and (searched or not claims):
+    views = _views_since(story, object_id)
+    if not story.listed(object_id) and (views or not claims):
         text = f"The agent ended without ever having seen {name}."
         return Cause(Code.NEVER_FOUND, last, text, object_id)
-    is_looked_for = _is_passed_over(story) or (searched and not claims)
+    is_looked_for = _is_passed_over(story) or (views >= _SEARCH and not claims)
     if story.listed(object_id) and not story.is_told_by_tag(object_id) and is_looked_for:
         text = f"{name} was in view, and the agent ended without taking it for what was asked."
         return Cause(Code.NOT_RECOGNISED, last, text, object_id)
@@ -172,11 +174,11 @@ def ended_by_agent(story: Story, object_id: int) -> Cause:
     return Cause(Code.FALSE_CLAIM if claims else Code.GAVE_UP, last, text, object_id)
 
 
-def _searched_since(story: Story, object_id: int) -> bool:
-    """Whether the agent went on looking elsewhere, after all that it did with its hand.
+def _views_since(story: Story, object_id: int) -> int:
+    """How many views of other places the agent got, after all that it did with its hand.
 
     What it did before the object was in view does not count: then there was reason to look. Nor
-    does a look at the object itself.
+    does a look at the object itself, nor a walk that showed nothing new.
     """
     since = max(
         [m.step for m in story.moments if m.is_done and m.act and m.act.name in (PICK, DROP)],
@@ -184,7 +186,9 @@ def _searched_since(story: Story, object_id: int) -> bool:
     )
     seen = [m.step for m in story.moments if object_id in m.seen]
     since = max(since, seen[0] if seen else 0)
-    return any(m.step > since and m.is_done and not _at(m, object_id) for m in story.moments)
+    shown = {view.step for view in story.views}
+    later = (m for m in story.moments if m.step > since and m.is_done and m.step in shown)
+    return sum(not _at(m, object_id) for m in later)
 
 
 def _at(moment: Moment, object_id: int) -> bool:
