@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import anyio
 import httpx
 import pytest
+from mcp import Client
 from tests.service.conftest import JUDGE, Serve
 from websockets.sync.client import connect
 
@@ -20,10 +23,12 @@ from adamo_vh.benchmark.oracle import Oracle
 from adamo_vh.benchmark.tasks import TASKS
 from adamo_vh.benchmark.tasks import task as find_task
 from adamo_vh.episode.config import EpisodeConfig
+from adamo_vh.episode.result import EpisodeResult, read_result
 from adamo_vh.inference.messages import AIMessage, ToolCall
 from adamo_vh.inference.players.scripted import ScriptedModel
 from adamo_vh.perception import Labeling, PerceptionConfig
 from adamo_vh.record.trajectory import read_trajectory
+from adamo_vh.service.hosting import Host
 from adamo_vh.session.lending import LentWorld
 
 SMALL = (320, 180)
@@ -82,7 +87,49 @@ def by_client(url: str, task: str, labeling: str, calls: Calls) -> str:
         return body.session
 
 
-FACES: dict[str, Face] = {"http": over_http, "websocket": over_websocket, "client": by_client}
+def over_mcp(url: str, task: str, labeling: str, calls: Calls) -> str:
+    async def play() -> str:
+        async with Client(f"{url}/mcp") as client:
+            wishes = {"task": task, "labeling": labeling}
+            begun = (await client.call_tool("new_episode", wishes)).content[0]
+            assert begun.type == "text"
+            episode = begun.text.partition("id of your episode is ")[2].partition(". ")[0]
+            for name, arguments in calls:
+                done = await client.call_tool(name, {"episode": episode, **arguments})
+                assert not done.is_error
+            await client.call_tool("finish", {"episode": episode, "answer": ANSWER})
+        return episode
+
+    return anyio.run(play)
+
+
+def told_result(url: str, host: Host, face: str, session: str) -> dict[str, Any]:
+    """What a judge is told; of an episode over MCP, what its run folder says when it is over."""
+    if face != "mcp":
+        headers = {"authorization": f"Bearer {JUDGE}"}
+        told: dict[str, Any] = httpx.get(
+            f"{url}/v1/sessions/{session}/result", headers=headers
+        ).json()
+        return told
+    until = time.monotonic() + 20.0
+    while (result := read_result(host.out / session)) is None:
+        assert time.monotonic() < until, "no result was written"
+        time.sleep(0.05)
+    return plain(result)
+
+
+def plain(result: EpisodeResult) -> dict[str, Any]:
+    """As JSON would carry it."""
+    found: dict[str, Any] = json.loads(json.dumps(dataclasses.asdict(result), default=str))
+    return found
+
+
+FACES: dict[str, Face] = {
+    "http": over_http,
+    "websocket": over_websocket,
+    "client": by_client,
+    "mcp": over_mcp,
+}
 QUICK = {"T1", "T8"}
 TRIED = [
     pytest.param(task.id, marks=[] if task.id in QUICK else [pytest.mark.slow]) for task in TASKS
@@ -105,17 +152,10 @@ def test_every_face_plays_the_same_episode(
     url, host = serve()
     for name, play in FACES.items():
         session = play(url, task, labeling, calls)
-        folder = host.find(session).folder
-        told = httpx.get(
-            f"{url}/v1/sessions/{session}/result", headers={"authorization": f"Bearer {JUDGE}"}
-        ).json()
-        score = json.loads(json.dumps(dataclasses.asdict(alone.score), default=str))
-        assert told["score"] == score, name
-        assert (told["steps"], told["answer"], told["termination"]) == (
-            len(calls),
-            ANSWER,
-            "answered",
-        )
+        told, expected = told_result(url, host, name, session), plain(alone)
+        for part in ("score", "steps", "answer", "termination"):
+            assert told[part] == expected[part], (name, part)
+        folder = host.out / session if name == "mcp" else host.find(session).folder
         one, other = read_trajectory(here).acts, read_trajectory(folder).acts
         assert [(a.name, a.state_hash) for a in one] == [(a.name, a.state_hash) for a in other]
         assert [a.feedback for a in one] == [a.feedback for a in other]

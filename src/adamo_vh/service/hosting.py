@@ -23,6 +23,7 @@ from adamo_vh.readable import readable
 from adamo_vh.record.run_folder import reserve
 from adamo_vh.record.termination import Limits
 from adamo_vh.service.hosted import Hosted
+from adamo_vh.service.seats import Seats
 from adamo_vh.service.watching import Watch
 from adamo_vh.session.builtin import scene_names
 from adamo_vh.session.driven import DrivenBody
@@ -71,6 +72,9 @@ class Host:
         self.out = out
         self.engines = engines or server_engines()
         """Where the sessions are played, those of every face."""
+        self.seats = Seats(terms.most_sessions)
+        """How many are played, those of every face."""
+        self.seats.count(self._played)
         self._sessions: dict[str, Hosted] = {}
         self._lenders: dict[str, Lender] = {}
         """Where each session is played."""
@@ -78,7 +82,6 @@ class Host:
         """Run folders of the sessions that were closed, for a judge."""
         self._begun_for: OrderedDict[str, str] = OrderedDict()
         """Sessions by the request that began them: it may come again, if its answer was lost."""
-        self._beginning = 0
         self._lock = threading.Lock()
         self._closing = threading.Event()
         self._sweeper = threading.Thread(target=self._sweep, name="adamo-idle", daemon=True)
@@ -95,14 +98,9 @@ class Host:
         with self._lock:
             if known := self._sessions.get(self._begun_for.get(asked.request, "")):
                 return known
-            if self._closing.is_set():
-                raise BusyError("The server is ending.")
-            if self._played() + self._beginning >= self.terms.most_sessions:
-                raise BusyError(
-                    f"{self.terms.most_sessions} sessions are played already; finish one, or wait."
-                )
-            self._beginning += 1
-        try:
+        if self._closing.is_set():
+            raise BusyError("The server is ending.")
+        with self.seats.one_more():
             hosted = self._begun(config, readable(asked.player).strip() or "outside")
             with self._lock:
                 self._sessions[hosted.id] = hosted
@@ -110,9 +108,6 @@ class Host:
                     self._begun_for[asked.request] = hosted.id
                 while len(self._begun_for) > _REMEMBERED:
                     self._begun_for.popitem(last=False)
-        finally:
-            with self._lock:
-                self._beginning -= 1
         return hosted
 
     def prepare(self, asked: Create) -> None:
@@ -223,7 +218,7 @@ class Host:
         self.engines.close()
 
     def _played(self) -> int:
-        return sum(not hosted.body.ended for hosted in self._sessions.values())
+        return sum(not hosted.body.ended for hosted in tuple(self._sessions.values()))
 
     def _sweep(self) -> None:
         """End what ran out of time, and close what nobody uses."""

@@ -11,12 +11,14 @@ import anyio
 import pytest
 from mcp import Client
 
+from adamo_vh.action_server.wire import Create
 from adamo_vh.episode.result import read_result
 from adamo_vh.record.run_folder import RESULT
 from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.service.app import serving
 from adamo_vh.service.hosting import Host
 from adamo_vh.session.outside import ENDED
+from adamo_vh.session.pooling import BusyError
 
 Serve = Callable[..., tuple[str, Host]]
 
@@ -43,6 +45,29 @@ def test_a_client_plays_on_the_one_port(serve: Serve) -> None:
     result = read_result(found[0])
     assert result is not None and result.termination is TerminationReason.STEP_LIMIT
     assert result.steps == 3 and result.labeling == "opaq"
+
+
+def test_the_faces_share_the_room_of_the_server(serve: Serve) -> None:
+    url, host = serve(most_sessions=1)
+
+    async def begin(expected: str) -> str:
+        async with Client(f"{url}/mcp") as client:
+            begun = (await client.call_tool("new_episode", {"task": "T8"})).content[0]
+            assert begun.type == "text" and expected in begun.text
+            return begun.text.partition("id of your episode is ")[2].partition(". ")[0]
+
+    async def finish(episode: str) -> None:
+        async with Client(f"{url}/mcp") as client:
+            await client.call_tool("finish", {"episode": episode, "answer": "Enough."})
+
+    first = host.create(Create("T8"))
+    anyio.run(begin, "1 session is played already")
+    host.close(first.id)
+    episode = anyio.run(begin, "id of your episode is ")
+    with pytest.raises(BusyError, match="1 session is played already"):
+        host.create(Create("T8"))
+    anyio.run(finish, episode)
+    host.create(Create("T8"))
 
 
 def test_what_is_unfinished_is_written_down_when_the_server_ends(

@@ -151,7 +151,7 @@ def test_several_episodes_and_clients_at_once(lent: LentWorld, tmp_path: Path) -
     async def play(client: Client) -> None:
         first, second = await _begun(client, task="T8"), await _begun(client, task="T8")
         full = await _call(client, "new_episode", task="T1")
-        assert full.is_error and "plays 2 episodes already" in _text(full)
+        assert full.is_error and "2 sessions are played already" in _text(full)
 
         async def carry_out(episode: str, calls: list[tuple[str, dict[str, Any]]]) -> None:
             for name, arguments in calls:

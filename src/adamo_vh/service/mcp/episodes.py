@@ -17,6 +17,7 @@ from adamo_vh.inference.model import ModelKind
 from adamo_vh.record.run_folder import FRAMES, MANIFEST, RESULT, SCENE, reserve
 from adamo_vh.record.trajectory import Observer, frame_type
 from adamo_vh.service.mcp.offer import Offer
+from adamo_vh.service.seats import Seats
 from adamo_vh.session.lending import LentWorld
 from adamo_vh.session.outside import OutsideEpisode
 from adamo_vh.session.pooling import Engines, server_engines
@@ -39,6 +40,7 @@ class Episodes:
         watch: Watch = lambda line: None,
         engines: Engines | None = None,
         observers: Sequence[Observer] = (),
+        seats: Seats | None = None,
     ) -> None:
         """Play nothing yet.
 
@@ -47,6 +49,7 @@ class Episodes:
             watch: Is told what happens; never the players.
             engines: Where it is played; made when they are needed, and closed here, by default.
             observers: Are told of every event of the episodes that begin here.
+            seats: Of a server with other faces; as many as are offered, by default.
         """
         self.offer = offer
         self._watch = watch
@@ -55,6 +58,8 @@ class Episodes:
         self._observers = observers
         self._lock = threading.RLock()
         self._live: dict[str, OutsideEpisode] = {}
+        self._seats = seats or Seats(offer.most)
+        self._seats.count(lambda: sum(not live.ended for live in tuple(self._live.values())))
         self._closing = threading.Event()
         self._sweeper = threading.Thread(target=self._sweep, name="adamo-mcp-idle", daemon=True)
         self._sweeper.start()
@@ -71,11 +76,11 @@ class Episodes:
             Its id, and the episode.
 
         Raises:
-            ConfigError: A wish cannot be met, or the server plays as many as it can.
+            ConfigError: A wish cannot be met.
+            BusyError: The server plays as many as it can.
         """
         config = self.offer.config(wishes)
-        with self._lock:
-            self._check_room()
+        with self._lock, self._seats.one_more():
             what = re.sub(r"[^a-z0-9]+", "-", (config.task or "free").lower()).strip("-")
             folder = reserve(self.offer.root, f"{what}-{secrets.token_hex(4)}")
             return folder.name, self._begun(folder, config, client)
@@ -111,9 +116,9 @@ class Episodes:
             ended = read_unfinished(folder).ended
             if ended is not None and ended.reason.is_scored and (folder / RESULT).exists():
                 return None
-            self._check_room()
-            self._watch(f"{name}: gone on with, from {folder}")
-            return self._resumed(folder)
+            with self._seats.one_more():
+                self._watch(f"{name}: gone on with, from {folder}")
+                return self._resumed(folder)
 
     def frame(self, name: str, frame: str) -> tuple[bytes, str]:
         """A picture that a player was shown, as it was drawn, and its media type.
@@ -160,12 +165,6 @@ class Episodes:
         if folder.is_symlink() or not (folder / MANIFEST).is_file():
             return None
         return folder if read_manifest(folder).model_kind is ModelKind.OUTSIDE else None
-
-    def _check_room(self) -> None:
-        if len(self._live) >= self.offer.most:
-            raise ConfigError(
-                f"The server plays {self.offer.most} episodes already; finish one, or try later."
-            )
 
     def _begun(self, folder: Path, config: EpisodeConfig, client: str) -> OutsideEpisode:
         with ExitStack() as stack:

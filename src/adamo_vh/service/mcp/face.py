@@ -33,7 +33,7 @@ def add(app: FastAPI, host: Host) -> AbstractAsyncContextManager[None] | None:
     from adamo_vh.service.mcp.server import create_server
     from adamo_vh.service.mcp.transports import http_route
 
-    episodes = Episodes(_offer(host), engines=host.engines)
+    episodes = Episodes(_offer(host), engines=host.engines, seats=host.seats)
     route, manager = http_route(create_server(episodes))
     app.router.routes.append(route)
 
