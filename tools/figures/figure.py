@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from tools.figures import clothes, face, hair, paint
-from tools.figures.binding import bind, rigid
+from tools.figures.binding import bind, bind_hands, rigid
 from tools.figures.hands import hand
 from tools.figures.meshing import (
     Mesh,
@@ -146,13 +146,13 @@ class _Sculptor:
 
     def _hands(self) -> Garment:
         low, high = (-0.03, 0.46, 0.78), (0.12, 0.68, 1.06)
-        left = polygonize(hand(self.v), low, high, 0.0018, 1720, 3)
+        left = polygonize(hand(self.v), low, high, 0.0016, 1820, 3)
         sleeve = clothes.sleeve(self.v)
         left = without_hidden(left, sleeve, 0.004)
         mesh = merged(left, Mesh(left.vertices * [1, -1, 1], left.faces[:, ::-1]))
         light = daylight(mesh.vertices, mesh.normals(), union(0.0, self.hands, mirrored(sleeve)))
         uvs = np.column_stack([np.full(len(light), 0.5), _rows(light)])
-        bound = bind(mesh.vertices, ("forearm", "hand", "fingers"))
+        bound = bind_hands(mesh.vertices)
         return _garment(
             "hands", mesh, uvs, bound, paint.palette([self.v.skin], 0.7, 0.55), 0.12, 0.2
         )

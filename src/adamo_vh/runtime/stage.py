@@ -16,8 +16,8 @@ from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.observation import Percept, SeenObject
 from adamo_vh.runtime import physics
 from adamo_vh.runtime.embodiment import Stance
+from adamo_vh.runtime.human.grasp import Thing
 from adamo_vh.runtime.human.motion import BodyFrame, Motion, idle
-from adamo_vh.runtime.human.postures import at_rest
 from adamo_vh.runtime.human.skin_mujoco import pose_human
 from adamo_vh.runtime.rendering import SceneRenderer
 from adamo_vh.runtime.world import CompiledWorld
@@ -41,6 +41,7 @@ class Stage:
         self._renderer: SceneRenderer | None = None
         self._moment: BodyFrame | None = None
         self._last: tuple[object, Percept] | None = None
+        self._outline: tuple[object, Thing] | None = None
         self.watcher: Watcher | None = None
         self.moments_per_s = MOMENTS_PER_S
         """How often an action that is watched is shown."""
@@ -59,11 +60,11 @@ class Stage:
 
     def _standing(self, body: Stance) -> BodyFrame:
         """The figure between actions."""
-        return BodyFrame(body, at_rest(body, self._size(body.held)))
+        return idle(body, 0.0, self.thing(body.held))
 
     def hand(self, body: Stance) -> Vec3:
-        """Where the hand of a standing figure is, and with it what it holds."""
-        return self.held_at(self._standing(body))
+        """Where what a standing figure holds is: the same for all things, however they are held."""
+        return self.held_at(idle(body, 0.0))
 
     def held_at(self, frame: BodyFrame) -> Vec3:
         """Where the middle of the held thing is: in the hand, but never in a wall."""
@@ -83,8 +84,14 @@ class Stage:
         hand = self.held_at(frame)
         return frame if hand == frame.hand else frame.with_hand_at(hand)
 
-    def _size(self, object_id: int | None) -> Vec3 | None:
-        return None if object_id is None else self._world.objects[object_id].size
+    def thing(self, object_id: int | None) -> Thing | None:
+        """The outline of an object as it is turned now; None for none."""
+        if object_id is None:
+            return None
+        key = object_id, self._world.box(object_id).orientation
+        if self._outline is None or self._outline[0] != key:
+            self._outline = key, Thing.around(self._world.corners(object_id))
+        return self._outline[1]
 
     def view(self, body: Stance, camera: Camera, *, from_the_eyes: bool) -> Percept:
         """Draw the world as it is, with the figure in it. An unchanged view is not drawn twice.
@@ -132,7 +139,7 @@ class Stage:
     @contextmanager
     def idling(self, body: Stance, seconds: float) -> Iterator[None]:
         """Show the figure some seconds into standing still: it breathes and blinks."""
-        self._moment = idle(body, seconds, self._size(body.held))
+        self._moment = idle(body, seconds, self.thing(body.held))
         try:
             yield
         finally:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.engine import FLOOR, FurnitureOutline, WorldSurface
-from adamo_vh.geometry import Box, Quaternion, Solid, Vec3
+from adamo_vh.geometry import Array, Box, Quaternion, Solid, Vec3
 from adamo_vh.observation import NOTHING
 from adamo_vh.runtime.assets.asset import Asset, Collider
 from adamo_vh.runtime.embodiment import FOV_Y_RAD
@@ -80,6 +80,23 @@ class CompiledWorld:
         q = self.data.qpos[item.qpos : item.qpos + 7]
         turn = Quaternion(*(float(v) for v in q[3:7]))
         return Box(Vec3.of(q[:3]), item.size, turn)
+
+    def corners(self, object_id: int) -> Array:
+        """(N, 3) corners of what is drawn of an object, from its middle, turned as it is now."""
+        from adamo_vh.runtime.assets.mujoco_parts import VISUAL_GROUP
+
+        model, item = self.model, self.objects[object_id]
+        parts = []
+        for geom in np.flatnonzero(self.model.geom_bodyid == item.body):
+            mesh = int(model.geom_dataid[geom])
+            if mesh < 0 or model.geom_group[geom] != VISUAL_GROUP:
+                continue
+            first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+            turn = Quaternion(*model.geom_quat[geom].tolist()).matrix()
+            corners = model.mesh_vert[first : first + count] @ turn.T
+            parts.append(corners + model.geom_pos[geom])
+        turn = self.box(object_id).orientation.matrix()
+        return np.asarray(np.concatenate(parts) @ turn.T)
 
 
 def scene_assets(scene: Scene) -> dict[str, Asset]:

@@ -18,8 +18,10 @@ _CONE_DEG = {
     "eyelids": 60.0,
     "clavicle": 45.0,
     "upper_arm": 170.0,
-    "hand": 85.0,  # with the turn of the forearm, which has no joint of its own
-    "fingers": 100.0,
+    "hand": 94.0,  # with the turn of the forearm, which has no joint of its own
+    "thumb_1": 60.0,
+    "thumb_2": 96.0,
+    "thumb_3": 85.0,
     "thigh": 130.0,
     "foot": 60.0,
     "toes": 60.0,
@@ -45,9 +47,13 @@ def limit_excess(pose: Pose) -> Array:
             aside = float(np.linalg.norm(turns[j] - bend * axis))
             excess[j] = max(0.0, low - bend, bend - high) + aside
         else:
-            excess[j] = max(0.0, float(np.linalg.norm(turns[j])) - np.radians(_CONE_DEG[name]))
+            most = _CONE_DEG.get(name) or _FINGER_DEG[name[-1]]
+            excess[j] = max(0.0, float(np.linalg.norm(turns[j])) - np.radians(most))
     return np.where(excess < 1e-6, 0.0, excess)
 
+
+_FINGER_DEG = {"1": 92.0, "2": 108.0, "3": 75.0}
+"""Likewise of the joints of a finger, from the knuckle on."""
 
 _SEGMENTS: tuple[tuple[float, str, str], ...] = (
     (0.15, "pelvis", "spine"),
@@ -55,7 +61,7 @@ _SEGMENTS: tuple[tuple[float, str, str], ...] = (
     (0.21, "chest", "neck"),
     (0.08, "head", "eyelids"),
     *((0.028, f"upper_arm_{s}", f"forearm_{s}") for s in "lr"),
-    *((0.022, f"forearm_{s}", f"fingers_{s}") for s in "lr"),
+    *((0.022, f"forearm_{s}", f"middle_1_{s}") for s in "lr"),
     *((0.105, f"thigh_{s}", f"shin_{s}") for s in "lr"),
     *((0.045, f"shin_{s}", f"foot_{s}") for s in "lr"),
     *((0.015, f"foot_{s}", f"toes_{s}") for s in "lr"),

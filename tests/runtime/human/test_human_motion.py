@@ -17,7 +17,9 @@ from adamo_vh.geometry import Vec3, wrap_angle
 from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.anatomy import grip, mirrored
 from adamo_vh.runtime.human.clips import clips, walk_clip
+from adamo_vh.runtime.human.closing import FINGER_JOINTS
 from adamo_vh.runtime.human.gait import gait
+from adamo_vh.runtime.human.grasp import Thing
 from adamo_vh.runtime.human.ik import ANKLE_M, STANDING_FEET, plant_feet
 from adamo_vh.runtime.human.motion import (
     BodyFrame,
@@ -44,6 +46,8 @@ from adamo_vh.runtime.navigation import Path
 RATE_HZ = 60
 MOST_TURN_DEG = 14.0
 """In one frame at 60 Hz: the lids of a blink are the fastest, then the swinging shins."""
+LIMBS = [j for j in range(len(JOINTS)) if j not in {*FINGER_JOINTS["l"], *FINGER_JOINTS["r"]}]
+"""All joints but those of the fingers."""
 START = Stance(Vec3(0.4, -0.3, 0.0), 0.3, Vec3(1.6, 0.1, 1.4))
 few = settings(max_examples=12, deadline=None, phases=[Phase.explicit, Phase.generate])
 coordinates = st.floats(-2.5, 2.5, allow_nan=False)
@@ -71,12 +75,23 @@ def ahead(body: Stance, distance_m: float, height_m: float) -> Vec3:
     return body.position + Vec3(cos * distance_m, sin * distance_m, height_m)
 
 
-def pick(body: Stance, target: Vec3) -> Motion:
-    return pick_motion(body, replace(body.facing(target)[0], held=7), target)
+def pick(body: Stance, target: Vec3, thing: Thing | None = None) -> Motion:
+    return pick_motion(body, replace(body.facing(target)[0], held=7), target, thing)
 
 
-def drop(body: Stance, target: Vec3) -> Motion:
-    return drop_motion(body, replace(body.facing(target)[0], held=None), target)
+def drop(body: Stance, target: Vec3, thing: Thing | None = None) -> Motion:
+    return drop_motion(body, replace(body.facing(target)[0], held=None), target, thing)
+
+
+THINGS = {
+    "bottle": Thing.box(0.065, 0.065, 0.24),
+    "jar": Thing.box(0.10, 0.10, 0.15),
+    "key": Thing.box(0.055, 0.024, 0.002),
+    "screwdriver": Thing.box(0.23, 0.022, 0.021),
+    "plate": Thing.box(0.25, 0.25, 0.03),
+    "plant": Thing.box(0.25, 0.25, 0.34),
+    "tray": Thing.box(0.42, 0.30, 0.04),
+}
 
 
 def frames(motion: Motion, rate_hz: int = RATE_HZ) -> list[BodyFrame]:
@@ -108,6 +123,11 @@ MOTIONS: dict[str, Callable[[], Motion]] = {
     "to the floor": lambda: drop(FULL, ahead(FULL, 0.7, 0.1)),
     "to a table behind": lambda: drop(FULL, ahead(FULL, -0.6, 0.85)),
     "to a shelf": lambda: drop(FULL, ahead(FULL, 0.7, 1.4)),
+    "a bottle from a table": lambda: pick(START, ahead(START, 0.6, 0.87), THINGS["bottle"]),
+    "a key from the floor": lambda: pick(START, ahead(START, 0.5, 0.01), THINGS["key"]),
+    "a plate to a shelf": lambda: drop(FULL, ahead(FULL, 0.7, 1.4), THINGS["plate"]),
+    "a plant from a table": lambda: pick(START, ahead(START, 0.6, 0.95), THINGS["plant"]),
+    "a tray to a low table": lambda: drop(FULL, ahead(FULL, 0.6, 0.45), THINGS["tray"]),
 }
 
 
@@ -182,7 +202,7 @@ def test_the_hand_meets_every_target_within_reach(target):
     assert np.linalg.norm(grip(pose) - target) < 0.02
     assert limit_excess(pose).max() == 0.0
     places, _ = joint_frames(pose)
-    assert places[:, 2].min() > -0.005
+    assert places[LIMBS, 2].min() > -0.005
     feet = stretch_to(*(float(v) for v in target)).feet()
     for side, foot in zip("lr", feet, strict=True):
         assert np.linalg.norm(places[INDEX[f"foot_{side}"]] - foot.ankle()[0]) < 0.005
@@ -226,7 +246,7 @@ def test_a_motion_begins_and_ends_exactly_in_its_states(motion):
     assert motion.at(0.0).body == motion.start
     last = motion.at(motion.duration_s)
     assert last.body == motion.end
-    assert np.array_equal(last.pose.rotations, at_rest(motion.end).rotations)
+    assert np.array_equal(last.pose.rotations, at_rest(motion.end, motion.thing).rotations)
     assert motion.body_at(motion.duration_s + 1.0) == motion.end
 
 
@@ -238,7 +258,7 @@ def test_a_motion_never_jumps_and_keeps_the_limits(motion):
     places = np.array([f.joints()[0] for f in film])
     assert np.linalg.norm(np.diff(places, axis=0), axis=2).max() * RATE_HZ < 5.5
     assert max(float(limit_excess(f.pose).max()) for f in film) == 0.0
-    assert places[:, :, 2].min() > -0.005
+    assert places[:, LIMBS, 2].min() > -0.005
 
 
 def test_frames_do_not_depend_on_which_others_were_asked_for(motion):
@@ -338,7 +358,7 @@ def test_the_hand_is_at_the_thing_when_it_grasps(distance, bearing, height):
     assert motion.at(event.time_s).hand.distance(target) < 0.02
     assert motion.body_at(event.time_s - 0.01).held is None
     assert motion.body_at(event.time_s).held == 7
-    at_end = BodyFrame(motion.end, at_rest(motion.end, motion.size)).hand
+    at_end = idle(motion.end, 0.0, motion.thing).hand
     assert motion.at(motion.duration_s).hand.distance(at_end) < 1e-6
 
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from adamo_vh.geometry import Array
-from adamo_vh.runtime.human.rotations import about, about_y
+from adamo_vh.runtime.human.hand import KNUCKLES
+from adamo_vh.runtime.human.rotations import about_y
 from adamo_vh.runtime.human.skeleton import EYES, INDEX, JOINTS, REST, Pose, joint_frames
 
 _PALM_M = 0.03
@@ -20,19 +21,22 @@ def rest(name: str) -> Array:
     return np.asarray(REST[INDEX[name]])
 
 
+def _along(side: str) -> Array:
+    """From the wrist to the knuckles in the rest pose."""
+    sign = 1.0 if side == "l" else -1.0
+    return np.array(KNUCKLES) * [1.0, sign, 1.0] - rest(f"hand_{side}")
+
+
 def _palm(side: str) -> Array:
     """Direction that the palm faces in the rest pose: to the body, at right angles to the hand."""
-    along = rest(f"fingers_{side}") - rest(f"hand_{side}")
+    along = _along(side)
     inward = np.array([0.0, along[2], -along[1]])
     inward = inward if inward[1] * along[1] < 0 else -inward
     return np.asarray(inward / np.linalg.norm(inward))
 
 
 PALM: Mapping[str, Array] = {side: _palm(side) for side in "lr"}
-GRIP: Mapping[str, Array] = {
-    side: 0.5 * (rest(f"fingers_{side}") - rest(f"hand_{side}")) + _PALM_M * PALM[side]
-    for side in "lr"
-}
+GRIP: Mapping[str, Array] = {side: 0.5 * _along(side) + _PALM_M * PALM[side] for side in "lr"}
 """(3,) where a held thing's middle sits, in the frame of the joint `hand`, metres, by side."""
 
 KNEE_AXIS = np.array([0.0, 1.0, 0.0])
@@ -50,7 +54,7 @@ ELBOW_AXIS: Mapping[str, Array] = {side: _elbow_axis(side) for side in "lr"}
 
 
 def _finger_axis(side: str) -> Array:
-    axis = np.cross(rest(f"fingers_{side}") - rest(f"hand_{side}"), PALM[side])
+    axis = np.cross(_along(side), PALM[side])
     return np.asarray(axis / np.linalg.norm(axis))
 
 
@@ -61,11 +65,17 @@ KNEE_RANGE = (np.radians(-4.0), np.radians(150.0))
 ELBOW_RANGE = (np.radians(-3.0), np.radians(145.0))
 
 
-def grip(pose: Pose, hand: str = "r") -> Array:
-    """(3,) grip point of a hand in the body frame, metres."""
+def grip(pose: Pose, hand: str = "r", offset: Array | None = None) -> Array:
+    """(3,) where the middle of a held thing is in the body frame, metres.
+
+    Args:
+        pose: The body.
+        hand: "l" or "r".
+        offset: (3,) from the wrist in the frame of the joint `hand`; `GRIP` if not given.
+    """
     places, rotations = joint_frames(pose)
     j = INDEX[f"hand_{hand}"]
-    return np.asarray(places[j] + rotations[j] @ GRIP[hand])
+    return np.asarray(places[j] + rotations[j] @ (GRIP[hand] if offset is None else offset))
 
 
 def eyes(pose: Pose) -> Array:
@@ -94,11 +104,6 @@ def mirrored(pose: Pose) -> Pose:
     """Left and right exchanged."""
     rotations = pose.rotations[_OTHER_SIDE] * (_FLIP[:, None] * _FLIP)
     return Pose(rotations, pose.pelvis_shift * _FLIP)
-
-
-def fingers(side: str, closed_rad: float) -> dict[str, Array]:
-    """Local rotation of the fingers, closed by an angle."""
-    return {f"fingers_{side}": about(tuple(FINGER_AXIS[side]), closed_rad)}
 
 
 def lids(closed_rad: float) -> dict[str, Array]:

@@ -13,7 +13,7 @@ import numpy as np
 from adamo_vh.geometry import Array
 from adamo_vh.runtime.human.anatomy import turned
 from adamo_vh.runtime.human.ik import LEG_M, STANDING_FEET, Foot, plant_feet
-from adamo_vh.runtime.human.postures import SLACK_M, STANDING_SHIFT, arms_at_ease
+from adamo_vh.runtime.human.postures import SLACK_M, STANDING_SHIFT, arms_at_ease, fingers_at_ease
 from adamo_vh.runtime.human.rotations import about_x, about_y, about_z, eased
 from adamo_vh.runtime.human.route import TURN_M, Route, Stand
 from adamo_vh.runtime.human.skeleton import REST, Pose
@@ -82,7 +82,8 @@ class Gait:
         phase = self._phase(time_s)
         if self.steps == 0 or not -_PRELUDE < phase < self.steps:
             pose = Pose(pelvis_shift=STANDING_SHIFT)
-            return plant_feet(turned(pose, arms_at_ease()), STANDING_FEET)[0]
+            pose = plant_feet(turned(pose, arms_at_ease()), STANDING_FEET)[0]
+            return fingers_at_ease(pose)
         here = self.stand(time_s)
         feet = [_in_body(_foot(track, phase), here) for track in self.landings]
         stride = self._stride(phase)
@@ -234,7 +235,7 @@ def _posture(
     joints["spine"] = counter @ about_y(np.radians(1.5) * size)
     joints["chest"] = counter
     pose, _ = plant_feet(turned(Pose(pelvis_shift=shift), joints), feet)
-    return pose
+    return fingers_at_ease(pose)
 
 
 def _lowered(shift: Array, feet: list[Foot], presence: float) -> float:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from adamo_vh.geometry import Array, Vec3
+from adamo_vh.geometry import Array
 from adamo_vh.runtime.human.anatomy import eyes, grip, turned
-from adamo_vh.runtime.human.ik import arm_to
-from adamo_vh.runtime.human.postures import CARRY, carrying, gazing, holding, standing
+from adamo_vh.runtime.human.closing import FINGER_JOINTS
+from adamo_vh.runtime.human.grasp import Grip
+from adamo_vh.runtime.human.ik import arm_to, hand_to
+from adamo_vh.runtime.human.postures import CARRY, carrying, gazing, helping, standing
 from adamo_vh.runtime.human.reach import open_hand, stretched
 from adamo_vh.runtime.human.rotations import blended, eased
 from adamo_vh.runtime.human.skeleton import INDEX, Pose, joint_frames
@@ -20,8 +22,9 @@ _GRASP_S = 0.36
 """How long the hand stays at the target to close or open."""
 _ON_THE_WAY_M = (0.88, 1.02, 1.14, 1.32)
 """Height of the hand in front of the body, on its way to 0.7, 1.0, 1.3 and 2.0 m."""
+_MIRROR = np.array([1.0, -1.0, 1.0])
 _ARM = [INDEX[n] for n in ("upper_arm_r", "forearm_r", "hand_r")]
-_FINGERS = INDEX["fingers_r"]
+_FINGERS = FINGER_JOINTS["r"]
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,8 @@ class Handling:
     """(3,) direction of the gaze before and after, in the body frame."""
     takes: bool
     """Whether the hand comes back full; else it goes out full."""
-    size: Vec3 | None = None
-    """Edge lengths of the thing."""
+    grip: Grip = field(default_factory=Grip)
+    """How the hand holds the thing."""
 
     @cached_property
     def stretch(self) -> Stretch:
@@ -74,7 +77,17 @@ class Handling:
         rotations = body.rotations.copy()
         rotations[_ARM] = arm.rotations[_ARM]
         rotations[_FINGERS] = self._fingers(time_s, part, full)
-        return Pose(rotations, body.pelvis_shift)
+        return self._helped(Pose(rotations, body.pelvis_shift), part, full)
+
+    def _helped(self, pose: Pose, part: float, full: bool) -> Pose:
+        """The left hand on the thing too, if it takes both."""
+        other = self.grip.other()
+        if other is None:
+            return pose
+        place = grip(pose, "r", self.grip.offset) if full else self.target
+        weight = 1.0 if full else float(eased((part - 0.25) / 0.75))
+        turn = _between(other.home(), other.there(self.target * _MIRROR), float(eased(part)))
+        return helping(pose, place, other, turn, weight)
 
     @staticmethod
     def _bend(part: float) -> float:
@@ -94,12 +107,15 @@ class Handling:
         # The arc is drawn for a body that stands, and goes along with the shoulder as it bends;
         # so the hand never comes too close to the shoulder.
         goal = self.target - (_shoulder(self._bent) - _shoulder(base))
-        way = _arc(grip(base), goal, float(self.target[2]), along)
+        offset = self.grip.offset
+        way = _arc(grip(base, "r", offset), goal, float(self.target[2]), along)
         way += _shoulder(body) - _shoulder(base)
-        home = holding(self.size) if full else open_hand()  # both with a straight wrist
-        there = open_hand(float(self.target[2]))
-        wrist = blended(home["hand_r"], there["hand_r"], along)
-        solved, _ = arm_to(turned(body, {"hand_r": wrist}), way)
+        turn = _between(self.grip.home(), self.grip.there(self.target), along)
+        if turn is None:
+            wrist = blended(np.eye(3), open_hand(float(self.target[2]))["hand_r"], along)
+            solved, _ = arm_to(turned(body, {"hand_r": wrist}), way)
+        else:
+            solved, _ = hand_to(body, way, turn, offset)
         if full:
             return solved
         weight = float(eased(part / 0.6))
@@ -117,22 +133,26 @@ class Handling:
     @cached_property
     def _homes(self) -> tuple[Pose, Pose]:
         empty = gazing(self._standing, self.gaze)
-        return empty, carrying(empty, self.size)
+        return empty, carrying(empty, self.grip)
 
     def _home(self, full: bool) -> Pose:
         """The posture before or after, with an empty or a full hand."""
         return self._homes[1 if full else 0]
 
     def _fingers(self, time_s: float, part: float, full: bool) -> Array:
-        """Local rotation of the fingers: open before the grasp, closed around the thing."""
-        relaxed = self._standing.rotations[_FINGERS]
-        closed, opened = holding(self.size)["fingers_r"], open_hand()["fingers_r"]
+        """(15, 3, 3) the fingers: open before the grasp, closed around the thing."""
+        closed, opened = self.grip.closed, self.grip.opened
         if part < 1.0 and full:
             return closed
         if part < 1.0:
-            return blended(relaxed, opened, float(eased(part / 0.7)))
+            return blended(self._standing.rotations[_FINGERS], opened, float(eased(part / 0.7)))
         done = float(eased((time_s - self.way_s) / _GRASP_S))
         return blended(opened, closed, done if self.takes else 1.0 - done)
+
+
+def _between(home: Array | None, there: Array | None, along: float) -> Array | None:
+    """(3, 3) how a hand is turned on its way; None leaves it to the arm."""
+    return None if home is None or there is None else blended(home, there, along)
 
 
 def _shoulder(pose: Pose) -> Array:

@@ -17,7 +17,15 @@ from adamo_vh.runtime.human.anatomy import (
     rest,
     turned,
 )
-from adamo_vh.runtime.human.rotations import about, about_y, about_z, basis, cross
+from adamo_vh.runtime.human.rotations import (
+    about,
+    about_y,
+    about_z,
+    basis,
+    cross,
+    from_rotation_vectors,
+    rotation_vectors,
+)
 from adamo_vh.runtime.human.skeleton import INDEX, Pose, joint_frames
 
 ANKLE_M = float(rest("foot_l")[2])
@@ -68,9 +76,10 @@ def two_bone(limb: Limb, root: Array, target: Array, hint: Array) -> tuple[Array
     return upper, lower, abs(length - float(np.linalg.norm(end)))
 
 
-def _arm(side: str, wrist: Array) -> Limb:
+def _arm(side: str, beyond: Array) -> Limb:
+    """An arm that ends so far beyond the wrist, (3,) in the frame of the forearm."""
     elbow, hand = rest(f"forearm_{side}"), rest(f"hand_{side}")
-    lower = hand - elbow + wrist @ GRIP[side]
+    lower = hand - elbow + beyond
     return Limb(elbow - rest(f"upper_arm_{side}"), lower, ELBOW_AXIS[side], ELBOW_RANGE)
 
 
@@ -84,7 +93,7 @@ _LEGS = {
     for side in "lr"
 }
 ARM_M = float(
-    sum(np.linalg.norm(bone) for bone in (_arm("r", np.eye(3)).upper, _arm("r", np.eye(3)).lower))
+    sum(np.linalg.norm(bone) for bone in (_arm("r", GRIP["r"]).upper, _arm("r", GRIP["r"]).lower))
 )
 """From the shoulder to the grip point of a stretched arm."""
 LEG_M = float(np.linalg.norm(_LEGS["l"].upper) + np.linalg.norm(_LEGS["l"].lower))
@@ -101,24 +110,69 @@ def _elbow_hint(direction: Array) -> Array:
     return np.asarray(bent)
 
 
-def arm_to(pose: Pose, target: Array, hand: str = "r") -> tuple[Pose, float]:
-    """Bring the grip point of a hand to a target by shoulder and elbow alone.
+def arm_to(
+    pose: Pose, target: Array, hand: str = "r", offset: Array | None = None
+) -> tuple[Pose, float]:
+    """Bring a place in a hand to a target by shoulder and elbow alone.
 
     Args:
         pose: The rest of the body; its wrist stays as it is.
         target: (3,) in the body frame, metres.
         hand: "l" or "r".
+        offset: (3,) the place, from the wrist in the frame of the joint `hand`; `GRIP` if not
+            given.
 
     Returns:
         The pose, and the distance left in metres.
     """
+    wrist = pose.rotations[INDEX[f"hand_{hand}"]]
+    return _arm_to(pose, target, hand, wrist @ (GRIP[hand] if offset is None else offset))
+
+
+def hand_to(
+    pose: Pose, target: Array, turn: Array, offset: Array, hand: str = "r"
+) -> tuple[Pose, float]:
+    """Bring a place in a hand to a target, with the hand turned as wished if the wrist can.
+
+    Args:
+        pose: The rest of the body.
+        target: (3,) in the body frame, metres.
+        turn: (3, 3) wished rotation of the joint `hand` in the body frame.
+        offset: (3,) the place, from the wrist in the frame of the joint `hand`.
+        hand: "l" or "r".
+
+    Returns:
+        The pose, and the distance left in metres.
+    """
+    turned_so, joint = turn, f"hand_{hand}"
+    for _ in range(_TRIES):
+        pose, gap = _arm_to(pose, target - turned_so @ offset, hand, np.zeros(3))
+        forearm = joint_frames(pose)[1][INDEX[f"forearm_{hand}"]]
+        wrist = rotation_vectors(forearm.T @ turn)
+        # Far away the wrist gives way, so that the arm is long enough.
+        most = _WRIST_RAD * max(0.0, 1.0 - gap / _GIVE_WAY_M)
+        angle = float(np.linalg.norm(wrist))
+        turned_so = forearm @ from_rotation_vectors(wrist * (most / max(most, angle, 1e-9)))
+        pose = turned(pose, {joint: forearm.T @ turned_so})
+    places, rotations = joint_frames(pose)
+    reached = places[INDEX[joint]] + rotations[INDEX[joint]] @ offset
+    return pose, float(np.linalg.norm(target - reached))
+
+
+_TRIES = 4
+_WRIST_RAD = np.radians(92.0)
+"""How far a hand can be turned away from its forearm, whose own turn is the wrist's here."""
+_GIVE_WAY_M = 0.12
+
+
+def _arm_to(pose: Pose, target: Array, hand: str, beyond: Array) -> tuple[Pose, float]:
     places, rotations = joint_frames(pose)
     chest, clavicle = rotations[INDEX["chest"]], rotations[INDEX[f"clavicle_{hand}"]]
     shoulder = places[INDEX[f"upper_arm_{hand}"]]
     flip = np.array([1.0, 1.0 if hand == "r" else -1.0, 1.0])
     line = chest.T @ (target - shoulder)
     hint = chest @ (flip * _elbow_hint(flip * line / max(float(np.linalg.norm(line)), 1e-9)))
-    limb = _arm(hand, pose.rotations[INDEX[f"hand_{hand}"]])
+    limb = _arm(hand, beyond)
     upper, lower, gap = two_bone(limb, shoulder, target, hint)
     arm = {f"upper_arm_{hand}": clavicle.T @ upper, f"forearm_{hand}": lower}
     return turned(pose, arm), gap

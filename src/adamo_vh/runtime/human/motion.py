@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -18,6 +18,7 @@ from adamo_vh.geometry import Array, Vec3, wrap_angle
 from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.anatomy import eyes, grip
 from adamo_vh.runtime.human.gait import Gait, gait
+from adamo_vh.runtime.human.grasp import Grip, Thing
 from adamo_vh.runtime.human.handling import Handling
 from adamo_vh.runtime.human.ik import arm_to
 from adamo_vh.runtime.human.postures import (
@@ -27,6 +28,7 @@ from adamo_vh.runtime.human.postures import (
     breathing,
     carrying,
     gazing,
+    helping,
     line_of_gaze,
 )
 from adamo_vh.runtime.human.rotations import about_z, eased
@@ -50,6 +52,8 @@ class BodyFrame:
     """The state the body would be in if the motion stopped now."""
     pose: Pose
     """In the frame of the body: origin at `body.position`, X along `body.heading_rad`."""
+    grip: Grip = field(default_factory=Grip)
+    """How the right hand holds what it holds."""
 
     def joints(self) -> tuple[Array, Array]:
         """World places (J, 3) and rotations (J, 3, 3) of the joints."""
@@ -63,14 +67,17 @@ class BodyFrame:
 
     @property
     def hand(self) -> Vec3:
-        """World place of the right hand's grip point: the middle of a held thing."""
-        return self._in_world(grip(self.pose))
+        """World place of the middle of a held thing: in the right hand."""
+        return self._in_world(grip(self.pose, "r", self.grip.offset))
 
     def with_hand_at(self, place: Vec3) -> BodyFrame:
         """The same moment, but the right arm is bent or turned so that the hand is at a place."""
         turn = about_z(-self.body.heading_rad)
         local = turn @ (place - self.body.position).array()
-        return BodyFrame(self.body, arm_to(self.pose, local)[0])
+        pose, _ = arm_to(self.pose, local, "r", self.grip.offset)
+        other = self.grip.other()
+        pose = pose if other is None else helping(pose, local, other)
+        return replace(self, pose=pose)
 
     @property
     def eyes(self) -> Vec3:
@@ -96,15 +103,15 @@ class Motion:
     inside: Callable[[float], BodyFrame]
     """The frame at a time strictly between start and end."""
     events: tuple[Event, ...] = ()
-    size: Vec3 | None = None
-    """Edge lengths of what is held at the start or the end."""
+    thing: Thing | None = None
+    """What is held at the start or the end."""
 
     def at(self, time_s: float) -> BodyFrame:
         """The frame at a time; the ends hold before the start and after the end."""
         if time_s >= self.duration_s:
-            return BodyFrame(self.end, at_rest(self.end, self.size))
+            return idle(self.end, 0.0, self.thing)
         if time_s <= 0.0:
-            return BodyFrame(self.start, at_rest(self.start, self.size))
+            return idle(self.start, 0.0, self.thing)
         return self.inside(time_s)
 
     def body_at(self, time_s: float) -> Stance:
@@ -127,23 +134,27 @@ class Motion:
             return self.at(time_s) if time_s < until else other.at(time_s - until)
 
         later = tuple(Event(e.time_s + until, e.kind) for e in other.events)
-        size = self.size if self.size is not None else other.size
+        thing = self.thing if self.thing is not None else other.thing
         events = self.events + later
-        return Motion(self.start, other.end, until + other.duration_s, inside, events, size)
+        return Motion(self.start, other.end, until + other.duration_s, inside, events, thing)
 
 
-def idle(body: Stance, time_s: float, size: Vec3 | None = None) -> BodyFrame:
+def idle(body: Stance, time_s: float, thing: Thing | None = None) -> BodyFrame:
     """A body that stands and waits: it breathes and blinks, and its state does not change."""
-    return BodyFrame(body, at_rest(body, size, time_s))
+    return BodyFrame(body, at_rest(body, thing, time_s), _grip(body, thing))
 
 
-def look_motion(start: Stance, end: Stance, size: Vec3 | None = None) -> Motion:
+def _grip(body: Stance, thing: Thing | None) -> Grip:
+    return Grip.of(None if body.held is None else thing, body.heading_rad)
+
+
+def look_motion(start: Stance, end: Stance, thing: Thing | None = None) -> Motion:
     """Look somewhere else, turning on the spot if the end says so; the gaze goes ahead.
 
     Args:
         start: The state before.
         end: The state after, at the same place.
-        size: Edge lengths of what is held, if known.
+        thing: What is held, if known.
     """
     steps = gait(route(start.heading_rad, [start.position], end.heading_rad))
     (yaw0, pitch0, far0), (yaw1, pitch1, far1) = _gaze(start), _gaze(end)
@@ -158,17 +169,17 @@ def look_motion(start: Stance, end: Stance, size: Vec3 | None = None) -> Motion:
         yaw = start.heading_rad + yaw0 + change * part - heading_rad
         return yaw, pitch0 + (pitch1 - pitch0) * part, far0 + (far1 - far0) * part
 
-    return _on_foot(start, end, steps, duration, gaze, size)
+    return _on_foot(start, end, steps, duration, gaze, thing)
 
 
-def walk_motion(start: Stance, path: Path, end: Stance, size: Vec3 | None = None) -> Motion:
+def walk_motion(start: Stance, path: Path, end: Stance, thing: Thing | None = None) -> Motion:
     """Walk along a path, eyes on the way, arms swinging unless one carries something.
 
     Args:
         start: The state before, at the first point of the path.
         path: Corners of the way.
         end: The state after, at the last point of the path.
-        size: Edge lengths of what is held, if known.
+        thing: What is held, if known.
     """
     points = [start.position, *path.points[1:-1], end.position]
     steps = gait(route(start.heading_rad, points, end.heading_rad))
@@ -185,47 +196,48 @@ def walk_motion(start: Stance, path: Path, end: Stance, size: Vec3 | None = None
         pitch = pitch0 * leave + pitch1 * arrive + _PATH_PITCH_RAD * way
         return yaw, pitch, far0 + (far1 - far0) * float(eased(time_s / duration))
 
-    return _on_foot(start, end, steps, duration, gaze, size)
+    return _on_foot(start, end, steps, duration, gaze, thing)
 
 
-def pick_motion(start: Stance, end: Stance, target: Vec3, size: Vec3 | None = None) -> Motion:
+def pick_motion(start: Stance, end: Stance, target: Vec3, thing: Thing | None = None) -> Motion:
     """Turn to a thing, reach for it, take it and bring it in front of the body.
 
     Args:
         start: The state before, with an empty hand.
         end: The state after, facing the target and holding it.
         target: Where the hand takes it, in the world; within reach from `end.position`.
-        size: Edge lengths of the thing, if known.
+        thing: Its outline, if known.
     """
-    return _handle(start, end, target, size, "grasp")
+    return _handle(start, end, target, thing, "grasp")
 
 
-def drop_motion(start: Stance, end: Stance, target: Vec3, size: Vec3 | None = None) -> Motion:
+def drop_motion(start: Stance, end: Stance, target: Vec3, thing: Thing | None = None) -> Motion:
     """Turn to a spot, put the held thing there and let the arm hang.
 
     Args:
         start: The state before, with something in the hand.
         end: The state after, facing the spot, with an empty hand.
         target: Where the middle of the thing comes to, in the world.
-        size: Edge lengths of the thing, if known.
+        thing: Its outline, if known.
     """
-    return _handle(start, end, target, size, "release")
+    return _handle(start, end, target, thing, "release")
 
 
 def _handle(
-    start: Stance, end: Stance, target: Vec3, size: Vec3 | None, kind: Literal["grasp", "release"]
+    start: Stance, end: Stance, target: Vec3, thing: Thing | None, kind: Literal["grasp", "release"]
 ) -> Motion:
     facing = replace(end, held=start.held)
     local = about_z(-end.heading_rad) @ (target - end.position).array()
-    hand = Handling(local, line_of_gaze(end), takes=kind == "grasp", size=size)
+    held = Grip.of(thing, end.heading_rad)
+    hand = Handling(local, line_of_gaze(end), takes=kind == "grasp", grip=held)
 
     def inside(time_s: float) -> BodyFrame:
         body = end if time_s >= hand.event_s - 1e-9 else facing
-        return BodyFrame(body, hand.pose(time_s))
+        return BodyFrame(body, hand.pose(time_s), held)
 
     event = Event(hand.event_s, kind)
-    act = Motion(facing, end, hand.duration_s, inside, (event,), size)
-    return look_motion(start, facing, size).then(act)
+    act = Motion(facing, end, hand.duration_s, inside, (event,), thing)
+    return look_motion(start, facing, thing).then(act)
 
 
 def _gaze(body: Stance) -> tuple[float, float, float]:
@@ -243,7 +255,7 @@ def _on_foot(
     steps: Gait,
     duration_s: float,
     gaze: Callable[[float, float], tuple[float, float, float]],
-    size: Vec3 | None,
+    thing: Thing | None,
 ) -> Motion:
     """A motion of the legs, with a gaze that goes its own way."""
 
@@ -264,6 +276,9 @@ def _on_foot(
         near_end = min(1.0, (duration_s - time_s) / 0.5)
         pose = breathing(steps.pose(time_s), breath(time_s) * float(eased(near_end)))
         pose = gazing(pose, line, blink(time_s) * float(eased(3 * near_end)))
-        return BodyFrame(body, pose if body.held is None else carrying(pose, size))
+        if body.held is None:
+            return BodyFrame(body, pose)
+        held = _grip(body, thing)
+        return BodyFrame(body, carrying(pose, held), held)
 
-    return Motion(start, end, duration_s, inside, (), size)
+    return Motion(start, end, duration_s, inside, (), thing)

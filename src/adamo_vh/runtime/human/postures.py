@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from adamo_vh.geometry import Array, Vec3
+from adamo_vh.geometry import Array
 from adamo_vh.runtime.embodiment import Stance
-from adamo_vh.runtime.human.anatomy import ELBOW_AXIS, fingers, lids, turned
-from adamo_vh.runtime.human.ik import STANDING_FEET, arm_to, plant_feet
+from adamo_vh.runtime.human.anatomy import ELBOW_AXIS, lids, mirrored, turned
+from adamo_vh.runtime.human.anatomy import grip as grip_point
+from adamo_vh.runtime.human.closing import FINGER_JOINTS, at_ease, mirrored_shape
+from adamo_vh.runtime.human.grasp import Grip, Thing
+from adamo_vh.runtime.human.ik import STANDING_FEET, arm_to, hand_to, plant_feet
 from adamo_vh.runtime.human.looks import LIDS_CLOSED_RAD
 from adamo_vh.runtime.human.rotations import (
     about,
     about_x,
     about_y,
     about_z,
+    blended,
     eased,
     from_rotation_vectors,
     looking,
@@ -35,6 +41,11 @@ _EYES_SHARE_RAD = np.radians([20.0, 18.0])
 _LEAST_TORSO_RAD = np.radians(45.0)
 _NECK_RAD, _HEAD_RAD = np.radians(38.0), np.radians(46.0)
 _GAZE_YAW_RAD = np.radians(100.0)
+_UNKNOWN = Grip()
+_MIRROR = np.array([1.0, -1.0, 1.0])
+_LEFT_ARM = np.array(
+    [INDEX[f"{n}_l"] for n in ("upper_arm", "forearm", "hand")] + FINGER_JOINTS["l"].tolist()
+)
 
 
 def arms_at_ease(swing_rad: tuple[float, float] = (0.0, 0.0)) -> dict[str, Array]:
@@ -51,7 +62,6 @@ def arms_at_ease(swing_rad: tuple[float, float] = (0.0, 0.0)) -> dict[str, Array
         bend = np.radians(13.0) + 0.55 * max(swing, 0.0) + 0.1 * swing
         joints[f"forearm_{side}"] = about(tuple(ELBOW_AXIS[side]), bend)
         joints[f"hand_{side}"] = np.eye(3)
-        joints |= fingers(side, np.radians(22.0))
     return joints
 
 
@@ -76,7 +86,19 @@ def standing(time_s: float = 0.0) -> Pose:
     """
     pose = Pose(pelvis_shift=STANDING_SHIFT)
     pose, _ = plant_feet(turned(pose, arms_at_ease()), STANDING_FEET)
-    return breathing(pose, breath(time_s))
+    return breathing(fingers_at_ease(pose), breath(time_s))
+
+
+def fingers_at_ease(pose: Pose) -> Pose:
+    """Both hands empty and relaxed."""
+    return fingered(fingered(pose, at_ease(), "l"), mirrored_shape(at_ease()), "r")
+
+
+def fingered(pose: Pose, shape: Array, hand: str) -> Pose:
+    """The pose with the fingers of a hand bent, (15, 3, 3) in the order of its joints."""
+    rotations = pose.rotations.copy()
+    rotations[FINGER_JOINTS[hand]] = shape
+    return replace(pose, rotations=rotations)
 
 
 def breathing(pose: Pose, fullness: float) -> Pose:
@@ -137,25 +159,57 @@ def _limited(turn: Array, limit_rad: float) -> Array:
     return turn if size <= limit_rad else turn * (limit_rad / size)
 
 
-def carrying(pose: Pose, size: Vec3 | None = None) -> Pose:
-    """Hold a thing in the right hand, in front of the body, forearm bent.
+def carrying(pose: Pose, grip: Grip = _UNKNOWN) -> Pose:
+    """Hold a thing in the right hand, in front of the body, forearm bent; the left one may help.
 
     Args:
         pose: The rest of the body.
-        size: Edge lengths of the thing; its middle is at `CARRY`, and the hand opens to fit it.
-            None for a thing that the hand closes around.
+        grip: How the thing is held; its middle is at `CARRY`.
     """
     # Half of what the steps do to the pelvis reaches the hand.
-    moved = 0.5 * (pose.pelvis_shift - STANDING_SHIFT)
-    held, _ = arm_to(turned(pose, holding(size)), CARRY + moved, "r")
-    return held
+    moved = CARRY + 0.5 * (pose.pelvis_shift - STANDING_SHIFT)
+    pose = gripping(pose, moved, grip)
+    other = grip.other()
+    return pose if other is None else helping(pose, grip_point(pose, "r", grip.offset), other)
 
 
-def holding(size: Vec3 | None, hand: str = "r") -> dict[str, Array]:
-    """Local rotation of fingers around a thing of some size; straight wrist."""
-    width = 0.06 if size is None else min(size.x, size.y, size.z)
-    closed = np.radians(70.0) - np.radians(55.0) * float(np.clip((width - 0.02) / 0.12, 0, 1))
-    return {f"hand_{hand}": np.eye(3)} | fingers(hand, closed)
+def gripping(pose: Pose, place: Array, grip: Grip) -> Pose:
+    """The right hand closed around a thing whose middle is at a place.
+
+    Args:
+        pose: The rest of the body.
+        place: (3,) in the body frame, metres.
+        grip: How it is held.
+    """
+    turn = grip.home()
+    if turn is None:
+        held, _ = arm_to(turned(pose, {"hand_r": np.eye(3)}), place, "r")
+    else:
+        held, _ = hand_to(pose, place, turn, grip.offset, "r")
+    return fingered(held, grip.closed, "r")
+
+
+def helping(
+    pose: Pose, place: Array, other: Grip, turn: Array | None = None, weight: float = 1.0
+) -> Pose:
+    """The left hand at its side of a thing that takes two, as far as it reaches.
+
+    Args:
+        pose: The body whose right hand has the thing.
+        place: (3,) the thing's middle in the body frame, metres.
+        other: How the left hand holds it, as a right hand in the mirror.
+        turn: (3, 3) how that hand should be turned, in the mirror; as it carries if not given.
+        weight: 0 for a hand that stays where it is.
+    """
+    turn = other.home() if turn is None else turn
+    if turn is None:
+        return pose
+    solved, gap = hand_to(mirrored(pose), place * _MIRROR, turn, other.offset)
+    share = weight * float(eased(1.5 - gap / 0.10))
+    solved = mirrored(fingered(solved, other.closed, "r"))
+    rotations = pose.rotations.copy()
+    rotations[_LEFT_ARM] = blended(rotations[_LEFT_ARM], solved.rotations[_LEFT_ARM], share)
+    return replace(pose, rotations=rotations)
 
 
 def line_of_gaze(body: Stance) -> Array:
@@ -167,13 +221,13 @@ def line_of_gaze(body: Stance) -> Array:
     return np.asarray(about_z(-body.heading_rad) @ line / size)
 
 
-def at_rest(body: Stance, size: Vec3 | None = None, time_s: float = 0.0) -> Pose:
+def at_rest(body: Stance, thing: Thing | None = None, time_s: float = 0.0) -> Pose:
     """The posture of a body that stands, looks and perhaps carries; what every motion ends in.
 
     Args:
         body: The state.
-        size: Edge lengths of the held thing, if known.
+        thing: What is held, if known.
         time_s: Time of standing, for breath and blink.
     """
     pose = gazing(standing(time_s), line_of_gaze(body), blink(time_s))
-    return pose if body.held is None else carrying(pose, size)
+    return pose if body.held is None else carrying(pose, Grip.of(thing, body.heading_rad))

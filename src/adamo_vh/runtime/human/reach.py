@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from adamo_vh.geometry import Array
-from adamo_vh.runtime.human.anatomy import FINGER_AXIS, eyes, fingers, mirrored, rest, turned
+from adamo_vh.runtime.human.anatomy import FINGER_AXIS, eyes, mirrored, turned
+from adamo_vh.runtime.human.hand import AXES
 from adamo_vh.runtime.human.ik import arm_to, plant_feet
 from adamo_vh.runtime.human.postures import gazing
 from adamo_vh.runtime.human.rotations import about, blended, eased
 from adamo_vh.runtime.human.skeleton import INDEX, Pose, joint_frames
 from adamo_vh.runtime.human.stretch import Stretch, stretch_to
 
-_HAND_AXIS = rest("fingers_r") - rest("hand_r")
-_HAND_AXIS = _HAND_AXIS / np.linalg.norm(_HAND_AXIS)
+_HAND_AXIS = AXES["r"][0]
 _MIRROR = np.array([1.0, -1.0, 1.0])
 
 
@@ -34,7 +34,7 @@ def reaching(pose: Pose, target: Array, hand: str = "r") -> Pose:
 
 
 def open_hand(height_m: float = 1.0) -> dict[str, Array]:
-    """Local rotations of a right hand that is about to grasp something at a height.
+    """Local rotation of a right wrist that is about to grasp something at a height.
 
     Near the floor the forearm turns and the wrist bends back, so that the fingers point ahead
     instead of into the floor.
@@ -42,7 +42,7 @@ def open_hand(height_m: float = 1.0) -> dict[str, Array]:
     low = float(eased((0.55 - height_m) / 0.4))
     wrist = about(tuple(_HAND_AXIS), -np.radians(60.0) * low)
     wrist = wrist @ about(tuple(FINGER_AXIS["r"]), -np.radians(50.0) * low)
-    return {"hand_r": wrist} | fingers("r", np.radians(8.0))
+    return {"hand_r": wrist}
 
 
 def stretched(pose: Pose, stretch: Stretch, weight: float = 1.0, stepped: float = 1.0) -> Pose:

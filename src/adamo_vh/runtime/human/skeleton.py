@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from adamo_vh.geometry import Array
+from adamo_vh.runtime.human.hand import WRIST, finger_joints
 
 _SIDES = ("l", "r")
 
@@ -27,8 +28,7 @@ _LIMBS: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
     ("clavicle", "chest", (0.0, 0.03, 1.395)),
     ("upper_arm", "clavicle", (-0.01, 0.175, 1.385)),
     ("forearm", "upper_arm", (-0.01, 0.354, 1.171)),
-    ("hand", "forearm", (0.01, 0.515, 0.979)),
-    ("fingers", "hand", (0.02, 0.573, 0.910)),
+    ("hand", "forearm", WRIST),
     ("thigh", "pelvis", (0.0, 0.09, 0.89)),
     ("shin", "thigh", (0.01, 0.095, 0.48)),
     ("foot", "shin", (-0.02, 0.10, 0.08)),
@@ -40,15 +40,22 @@ def _mirrored(point: tuple[float, float, float], side: str) -> tuple[float, floa
     return point if side == "l" else (point[0], -point[1], point[2])
 
 
-_TABLE = (
-    *_SPINE,
-    *(
-        (f"{name}_{side}", parent if parent in ("chest", "pelvis") else f"{parent}_{side}", place)
+def _both_sides(
+    joints: tuple[tuple[str, str, tuple[float, float, float]], ...],
+) -> tuple[tuple[str, str, tuple[float, float, float]], ...]:
+    return tuple(
+        (
+            f"{name}_{side}",
+            parent if parent in ("chest", "pelvis") else f"{parent}_{side}",
+            _mirrored(at, side),
+        )
         for side in _SIDES
-        for name, parent, at in _LIMBS
-        for place in [_mirrored(at, side)]
-    ),
-)
+        for name, parent, at in joints
+    )
+
+
+_FINGERS = finger_joints()
+_TABLE = (*_SPINE, *_both_sides(_LIMBS), *_both_sides(_FINGERS))
 
 JOINTS: tuple[str, ...] = tuple(name for name, _, _ in _TABLE)
 """Names; a parent always comes before its children."""
@@ -56,6 +63,13 @@ INDEX = {name: i for i, name in enumerate(JOINTS)}
 PARENTS: tuple[int, ...] = tuple(-1 if parent is None else INDEX[parent] for _, parent, _ in _TABLE)
 REST: Array = np.array([place for _, _, place in _TABLE])
 """(J, 3) places of the joints in the rest pose, body frame, metres."""
+_LIMB_COUNT = len(JOINTS) - 2 * len(_FINGERS)
+_FINGER_ROWS = tuple(
+    (row, np.array([PARENTS[j] for j in row]))
+    for k in (1, 2, 3)
+    for row in [np.array([j for j, name in enumerate(JOINTS) if f"_{k}_" in name])]
+)
+"""Numbers of the first joints of all fingers and of their parents, then the second, the third."""
 EYES = np.array([0.085, 0.0, 1.60])
 """Midpoint between the eyes in the rest pose, body frame; moves with the head."""
 
@@ -79,11 +93,16 @@ def joint_frames(pose: Pose) -> tuple[Array, Array]:
     """
     places = np.empty((len(JOINTS), 3))
     rotations = np.empty((len(JOINTS), 3, 3))
-    for j, parent in enumerate(PARENTS):
+    for j, parent in enumerate(PARENTS[:_LIMB_COUNT]):
         if parent < 0:
             places[j] = REST[j] + pose.pelvis_shift
             rotations[j] = pose.rotations[j]
         else:
             places[j] = places[parent] + rotations[parent] @ (REST[j] - REST[parent])
             rotations[j] = rotations[parent] @ pose.rotations[j]
+    for row, parents in _FINGER_ROWS:
+        held = rotations[parents]
+        shifts = REST[row] - REST[parents]
+        places[row] = places[parents] + np.matmul(held, shifts[:, :, None])[:, :, 0]
+        rotations[row] = np.matmul(held, pose.rotations[row])
     return places, rotations
