@@ -6,6 +6,7 @@ not, with Y or Z up, facing this way or that; its meshes are those of Mara or of
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -33,6 +34,12 @@ _LIMBS = {
     "clavicle": "Shoulder", "upper_arm": "UpperArm", "forearm": "LowerArm", "hand": "Hand",
     "thigh": "UpperLeg", "shin": "LowerLeg", "foot": "Foot", "toes": "Toes",
 }  # fmt: skip
+_FINGER = re.compile(r"(thumb|index|middle|ring|little)_(\d)")
+FINGERS = tuple(name for name in JOINTS if _FINGER.match(name))
+_PHALANX = {
+    "thumb": ("Metacarpal", "Proximal", "Distal"),
+    **dict.fromkeys(("index", "middle", "ring", "little"), ("Proximal", "Intermediate", "Distal")),
+}
 _MIXAMO = {
     "hips": "Hips", "spine": "Spine", "chest": "Spine1", "neck": "Neck", "head": "Head",
     "Shoulder": "Shoulder", "UpperArm": "Arm", "LowerArm": "ForeArm", "Hand": "Hand",
@@ -54,6 +61,9 @@ def bone_word(joint: str) -> tuple[str, str]:
     """The side ("", "left", "right") and the name of a joint in VRM's words."""
     if joint[-2:] in ("_l", "_r"):
         side = "left" if joint.endswith("_l") else "right"
+        if finger := _FINGER.match(joint):
+            name, number = finger.groups()
+            return side, f"{name.capitalize()}{_PHALANX[name][int(number) - 1]}"
         return side, _LIMBS.get(joint[:-2], joint[:-2])
     return "", _WORDS.get(joint, joint)
 
@@ -61,6 +71,9 @@ def bone_word(joint: str) -> tuple[str, str]:
 def bone_name(joint: str, style: str) -> str:
     """What a program calls a joint."""
     side, word = bone_word(joint)
+    if (finger := _FINGER.match(joint)) and style not in ("nothing", "adamo"):
+        name, number = finger.groups()
+        word = f"{name}_0{number}" if style == "unreal" else f"{name.capitalize()}{number}"
     match style:
         case "mixamo":
             return f"mixamorig:{side.capitalize()}{_MIXAMO.get(word, word)}"
@@ -139,8 +152,6 @@ class Rig:
     """How much longer the way to a joint is than ours, by the joint's name without its side."""
     head: float = 1.0
     """How large the head is, as a share of ours."""
-    fingers: bool = False
-    """Bones of thumb, index and little finger."""
     more: Mapping[str, Any] = field(default_factory=dict)
     """Further members of the JSON."""
 
@@ -254,7 +265,7 @@ def _nodes(
     placed: tuple[np.ndarray, np.ndarray],
     joints: Sequence[int],
 ) -> dict[int, int]:
-    frames, own = placed
+    frames, _ = placed
     writer.add("nodes", {"name": "Armature"})
     nodes: dict[int, int] = {}
     for j in joints:
@@ -276,34 +287,7 @@ def _nodes(
         )
         above = writer.json["nodes"][nodes[parent] if parent >= 0 else 0]
         above.setdefault("children", []).append(nodes[j])
-        if told.fingers and JOINTS[j].startswith("hand_"):
-            _fingers(writer, told, np.linalg.inv(own[j]), name[-1], nodes[j])
     return nodes
-
-
-def _fingers(writer: GlbWriter, told: Rig, hand: np.ndarray, side: str, above: int) -> None:
-    """Bones at the roots of thumb, index and little finger, which no vertex hangs on.
-
-    Args:
-        writer: Takes them.
-        told: How the rig is written.
-        hand: (4, 4) the frame of the hand's bone, from places about the hand in our rest pose.
-        side: "l" or "r".
-        above: The hand's node.
-    """
-    knuckles = REST[INDEX[f"fingers_{side}"]] - REST[INDEX[f"hand_{side}"]]
-    front = np.array([0.03, 0.0, 0.0])
-    for finger, place in (
-        ("Thumb", front + 0.3 * knuckles),
-        ("Index", knuckles + front),
-        ("Little", knuckles - front),
-    ):
-        name = f"{'left' if side == 'l' else 'right'}{finger}Proximal"
-        name = f"mixamorig:{name[0].upper()}{name[1:]}" if told.style == "mixamo" else name
-        node = writer.add(
-            "nodes", {"name": name, "translation": (hand @ [*place, 1.0])[:3].tolist()}
-        )
-        writer.json["nodes"][above].setdefault("children", []).append(node)
 
 
 def _parent(joint: int, joints: Sequence[int]) -> int:
@@ -381,7 +365,9 @@ def _vrm(writer: GlbWriter, told: Rig, nodes: Mapping[int, int], joints: Sequenc
     for j in joints:
         side, word = bone_word(JOINTS[j])
         name = f"{side}{word}" if side else word
-        if word in (*_LIMBS.values(), *_WORDS.values()):
+        if word in (*_LIMBS.values(), *_WORDS.values()) or JOINTS[j] in FINGERS:
+            if told.vrm == "0" and word.startswith("Thumb"):  # It names the thumb otherwise.
+                name = name.replace("Proximal", "Intermediate").replace("Metacarpal", "Proximal")
             words[name] = nodes[j]
     head = next((i for i, m in enumerate(writer.json["meshes"]) if m["name"] == "lids"), 0)
     at = next(

@@ -6,7 +6,16 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.runtime.human.own.rigs import Y_UP, Y_UP_BACKWARDS, Z_UP, Rig, palms_forward, rig, t_pose
+from tests.runtime.human.own.rigs import (
+    FINGERS,
+    Y_UP,
+    Y_UP_BACKWARDS,
+    Z_UP,
+    Rig,
+    palms_forward,
+    rig,
+    t_pose,
+)
 
 from adamo_vh.errors import FileError
 from adamo_vh.runtime.human.own.bones import Bones, bones_of
@@ -21,11 +30,11 @@ SHORT = {"shin": 0.6, "foot": 0.6, "forearm": 0.8, "hand": 0.8, "chest": 0.8, "s
 TALL = {"shin": 1.3, "foot": 1.3, "forearm": 1.2, "upper_arm": 0.8, "neck": 0.9}
 PARTS = ("hands", "shoes", "trousers")
 RIGS = {
-    "like ours": Rig("unity", t_pose(), garments=PARTS, fingers=True),
+    "like ours": Rig("unity", t_pose(), garments=PARTS),
     "short": Rig("unity", t_pose(), Y_UP, 50.0, 0.6, True, offsets=SHORT, garments=PARTS),
     "tall": Rig("mixamo", t_pose(), Z_UP, offsets=TALL, garments=PARTS, turned=True),
-    "backwards": Rig("unity", axes=Y_UP_BACKWARDS, offsets=TALL, garments=PARTS, fingers=True),
-    "palms to the front": Rig("unity", palms_forward(), fingers=True, garments=PARTS, turned=True),
+    "backwards": Rig("unity", axes=Y_UP_BACKWARDS, offsets=TALL, garments=PARTS),
+    "palms to the front": Rig("unity", palms_forward(), garments=PARTS, turned=True),
 }
 LANDS = {
     "leftUpperArm": "upper_arm_l",
@@ -162,3 +171,33 @@ def test_the_trunk_is_numbered_from_below():
     assert bones.spine == ("spine0", "spine1", "spine2")
     assert "spine" not in bones.lacking()
     assert "neck" in bones.lacking()
+
+
+HALF = {f"{finger}_{k}": 1.3 for finger in ("index", "middle", "ring", "little") for k in (2, 3)}
+HANDS = {
+    "like ours": RIGS["like ours"],
+    "long fingers": Rig("vroid", t_pose(), Y_UP, offsets=HALF, garments=PARTS, turned=True),
+    "without fingers": Rig("unity", t_pose(), without=FINGERS, garments=PARTS),
+}
+
+
+@pytest.mark.parametrize("name", ["like ours", "long fingers"])
+@pytest.mark.parametrize("finger", ["index", "little", "thumb"])
+def test_fingers_bend_where_ours_do(name, finger):
+    made = own_figure_of(rig(HANDS[name]), "x.glb").figure
+    hands = garment(made, "hands")
+    # What a joint moves lies beyond it along the finger, and near it.
+    for k in (1, 2, 3):
+        j = INDEX[f"{finger}_{k}_l"]
+        mine = hands.vertices[(hands.weights * (hands.bone_ids == j)).max(axis=1) > 0.6]
+        assert len(mine) > 5
+        assert np.linalg.norm(mine - REST[j], axis=1).max() < 0.065
+        assert np.linalg.norm(mine - REST[j], axis=1).min() < 0.02
+
+
+def test_a_hand_without_finger_bones_stays_as_it_is():
+    told = own_figure_of(rig(HANDS["without fingers"]), "x.glb")
+    hands = garment(told.figure, "hands")
+    used = {int(j) for j in np.unique(hands.bone_ids[hands.weights > 0])}
+    assert not used & {INDEX[name] for name in FINGERS}
+    assert "the hand does not close" in "\n".join(told.report.lines())

@@ -83,7 +83,8 @@ def bones_of(document: Document, tree: Tree) -> Bones:
         source = f"names of bones{f' ({whose})' if whose else ''}"
     found |= _trunk(found, tree)
     if missing := [bone for bone in REQUIRED if bone not in found]:
-        known = ", ".join(sorted(found)) or "none"
+        fingers = tuple(f"{side}{finger}" for side in ("left", "right") for finger in FINGERS)
+        known = ", ".join(sorted(b for b in found if not b.startswith(fingers))) or "none"
         shown = ", ".join(readable(name)[:30] for name in tree.names if name)
         raise Broken(
             f"bones are missing: {', '.join(missing)} (found: {known}). Name its bones as VRM, "

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from adamo_vh.geometry import Array
+from adamo_vh.runtime.human.hand import KNUCKLES
+from adamo_vh.runtime.human.own.bones import FINGERS
 from adamo_vh.runtime.human.own.faults import Broken
 from adamo_vh.runtime.human.own.stature import SIDES, Stature
 from adamo_vh.runtime.human.rotations import about
@@ -84,13 +86,12 @@ def fit_of(stature: Stature, crown: float, spine: tuple[str, ...]) -> Fit:
 
 def _limb_joints(side: str, letter: str) -> dict[str, int]:
     names = {
-        "UpperArm": "upper_arm", "LowerArm": "forearm", "Hand": "hand", "Fingers": "fingers",
+        "UpperArm": "upper_arm", "LowerArm": "forearm", "Hand": "hand", "Fingers": "middle_1",
         "UpperLeg": "thigh", "LowerLeg": "shin", "Foot": "foot", "Toes": "toes",
     }  # fmt: skip
-    for finger in ("Index", "Middle", "Ring", "Little"):
-        names |= {f"{finger}{number}": "fingers" for number in (1, 2, 3, 4)}
+    for finger in FINGERS:
+        names |= {f"{finger}{n}": f"{finger.lower()}_{min(n, 3)}" for n in (1, 2, 3, 4)}
         names[f"{finger}0"] = "hand"
-    names |= {f"Thumb{number}": "hand" for number in range(5)}
     return {f"{side}{bone}": INDEX[f"{joint}_{letter}"] for bone, joint in names.items()}
 
 
@@ -205,7 +206,8 @@ def _fit_arm(
         stretches[left + bone] = along / scale
     hand = at[left + "Hand"]
     knuckles = [at[left + name] for name in _KNUCKLES if left + name in at]
-    ours = REST[INDEX[f"fingers_{letter}"]] - REST[INDEX[f"hand_{letter}"]]
+    ours = _knuckles([name for name in _KNUCKLES if left + name in at], letter)
+    ours = ours - REST[INDEX[f"hand_{letter}"]]
     axis = ours / np.linalg.norm(ours)
     line, size = turns["LowerArm"][1], scale
     if knuckles and np.linalg.norm(np.mean(knuckles, axis=0) - hand) > 1e-6:
@@ -227,10 +229,51 @@ def _fit_arm(
         _stretched(lower_turn, lower[1], lower[2], scale),
         REST[INDEX[f"forearm_{letter}"]],
     )
-    held = _anchored(hand, size * about(tuple(axis), twist) @ turn, REST[INDEX[f"hand_{letter}"]])
-    for bone in ("Hand", "Fingers", *(f"{finger}{n}" for finger in
-                 ("Thumb", "Index", "Middle", "Ring", "Little") for n in range(5))):  # fmt: skip
-        maps[left + bone] = held
+    palm = about(tuple(axis), twist) @ turn
+    held = _anchored(hand, size * palm, REST[INDEX[f"hand_{letter}"]])
+    maps[left + "Hand"] = maps[left + "Fingers"] = held
+    for finger in FINGERS:
+        maps |= {f"{left}{finger}{n}": held for n in range(5)}
+        _fit_finger(at, (left + finger, f"{finger.lower()}_{{}}_{letter}"), palm, size, maps)
+
+
+def _knuckles(named: Sequence[str], letter: str) -> Array:
+    """(3,) the middle between our knuckles that a figure has too; of all if it has none."""
+    joints = [f"{name[:-1].lower()}_1_{letter}" for name in named if name != "Fingers"]
+    if joints:
+        return np.asarray(np.mean([REST[INDEX[joint]] for joint in joints], axis=0))
+    return np.array(KNUCKLES) * [1.0, 1.0 if letter == "l" else -1.0, 1.0]
+
+
+def _fit_finger(
+    at: Mapping[str, Array],
+    names: tuple[str, str],
+    turn: Array,
+    size: float,
+    maps: dict[str, Array],
+) -> None:
+    """Bend a finger as ours is in the rest pose, joint on joint.
+
+    Args:
+        at: Where bones are, units of the file.
+        names: Of the finger's bones without their numbers, and of our joints with a gap for it.
+        turn: (3, 3) how the hand is turned.
+        size: Scale of the hand.
+        maps: Takes those of the bones.
+    """
+    bone, joint = names
+    for number in (1, 2, 3):
+        if f"{bone}{number}" not in at:
+            return
+        begin, linear = at[f"{bone}{number}"], size * turn
+        ours = REST[INDEX[joint.format(number)]]
+        if number < 3 and f"{bone}{number + 1}" in at:
+            line, length = _between(begin, at[f"{bone}{number + 1}"], "hand")
+            goal = REST[INDEX[joint.format(number + 1)]] - ours
+            long = float(np.linalg.norm(goal))
+            turn = _swing(turn @ line, goal / long) @ turn
+            linear = _stretched(turn, line, long / length, size)
+        maps[f"{bone}{number}"] = maps[f"{bone}4"] = _anchored(begin, linear, ours)
 
 
 def _twist(at: Mapping[str, Array], left: str, turn: Array, axis: Array) -> float:
