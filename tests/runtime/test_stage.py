@@ -150,3 +150,47 @@ def test_a_film_can_be_played(engine: BuiltinEngine, tmp_path: Path) -> None:
 def test_a_film_needs_a_known_ending(engine: BuiltinEngine, tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"\.webm or \.avi"):
         VideoRecorder(tmp_path / "film.mp4", FilmSet(engine))
+
+
+BOTTLE, PLANT = 36, 50
+
+
+@pytest.mark.parametrize("thing", [BOTTLE, CUP, PLANT])
+def test_what_is_taken_is_in_the_hand_at_every_moment_and_where_it_is_told(
+    engine: BuiltinEngine, thing: int
+) -> None:
+    engine.reset(0)
+    gaps: list[float] = []
+
+    def watch(seconds: float) -> bool:
+        shown = engine.stage.shown(engine.body.stance)
+        if shown.body.held is not None:
+            gaps.append(shown.hand.distance(engine.world.box(thing).center))
+        return True
+
+    engine.stage.watcher = watch
+    try:
+        assert engine.body.pick(thing).outcome is not Outcome.REFUSED
+    finally:
+        engine.stage.watcher = None
+    assert len(gaps) > 8
+    assert max(gaps) < 1e-6
+    # At rest the thing is where every thing is carried, and the hand has come to it.
+    stance = engine.body.stance
+    assert engine.world.box(thing).center.distance(engine.stage.hand(stance)) < 1e-9
+    assert engine.stage.shown(stance).hand.distance(engine.stage.hand(stance)) < 0.03
+
+
+def test_the_outline_of_a_thing_is_that_of_its_meshes(engine: BuiltinEngine) -> None:
+    engine.reset(0)
+    corners = engine.world.surface(PLANT)
+    size = engine.world.objects[PLANT].size
+    np.testing.assert_allclose(np.ptp(corners, axis=0), size.array(), atol=0.012)
+    thing = engine.stage.thing(PLANT)
+    assert thing is not None
+    ahead = np.array([1.0, 0.0])
+    # Below are the narrow pot's sides, above those of the leaves.
+    assert thing.side(ahead, -0.12) < 0.8 * thing.side(ahead, 0.08)
+    assert thing.height == pytest.approx(size.z, abs=0.012)
+    assert engine.stage.thing(None) is None
+    assert engine.stage.thing(PLANT) is thing

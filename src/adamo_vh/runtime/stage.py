@@ -90,7 +90,7 @@ class Stage:
             return None
         key = object_id, self._world.box(object_id).orientation
         if self._outline is None or self._outline[0] != key:
-            self._outline = key, Thing.around(self._world.corners(object_id))
+            self._outline = key, Thing.around(self._world.surface(object_id))
         return self._outline[1]
 
     def view(self, body: Stance, camera: Camera, *, from_the_eyes: bool) -> Percept:

@@ -29,6 +29,9 @@ ROOM = "room"
 """Body that carries floor, walls and ceiling."""
 
 
+_LONG_EDGE_M = 0.012
+
+
 @dataclass(frozen=True, slots=True)
 class WorldObject:
     """Where an interactable object is found in the model."""
@@ -81,8 +84,11 @@ class CompiledWorld:
         turn = Quaternion(*(float(v) for v in q[3:7]))
         return Box(Vec3.of(q[:3]), item.size, turn)
 
-    def corners(self, object_id: int) -> Array:
-        """(N, 3) corners of what is drawn of an object, from its middle, turned as it is now."""
+    def surface(self, object_id: int) -> Array:
+        """(N, 3) corners of what is drawn of an object, and places on its long edges.
+
+        From its middle, turned as it is now.
+        """
         from adamo_vh.runtime.assets.mujoco_parts import VISUAL_GROUP
 
         model, item = self.model, self.objects[object_id]
@@ -93,8 +99,13 @@ class CompiledWorld:
                 continue
             first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
             turn = Quaternion(*model.geom_quat[geom].tolist()).matrix()
-            corners = model.mesh_vert[first : first + count] @ turn.T
-            parts.append(corners + model.geom_pos[geom])
+            corners = model.mesh_vert[first : first + count]
+            face, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+            ends = corners[model.mesh_face[face : face + faces][:, [0, 1, 1, 2, 2, 0]]]
+            a, b = ends.reshape(-1, 2, 3).transpose(1, 0, 2)
+            long = np.linalg.norm(b - a, axis=1) > _LONG_EDGE_M
+            on_edges = [a[long] + share * (b - a)[long] for share in np.linspace(0.125, 0.875, 7)]
+            parts.append(np.concatenate([corners, *on_edges]) @ turn.T + model.geom_pos[geom])
         turn = self.box(object_id).orientation.matrix()
         return np.asarray(np.concatenate(parts) @ turn.T)
 
