@@ -66,6 +66,8 @@ class CompiledWorld:
     object_of_geom: NDArray[np.int16]
     brightness: tuple[float, ...]
     """How bright the scene has its lights."""
+    figure: Figure
+    """Who stands in it."""
     absent: set[int] = field(default_factory=set)
     """Ids of the objects that are out of the room."""
 
@@ -172,6 +174,7 @@ def build_world(
         tuple(_seen_from_above(piece, assets[piece.asset]) for piece in scene.furniture),
         object_of_geom,
         tuple(light.diffuse for light in scene.lights),
+        figure,
     )
 
 
