@@ -81,7 +81,7 @@ def test_what_is_found_is_reported():
     assert (made.up, made.facing, made.rest_pose, made.unit) == ("+Y", "+Z", "T", "centimetres")
     assert made.skinned == 3
     assert made.attached == 1
-    assert any("stage hangs on no bone" in note for note in made.notes)
+    assert any("stage hangs on no bone of the body" in note for note in made.notes)
     assert "the hand does not close" in "\n".join(made.lines())
     assert len(made.sha256) == 64
 

@@ -111,9 +111,10 @@ class Making:
                 if share.mesh != piece.mesh or share.target >= len(piece.targets):
                     continue
                 array = piece.targets[share.target]
-                if array is None or self.numbers.count(array) != len(points):
+                if array is None or self.numbers.count(array) <= piece.rows.max(initial=-1):
                     continue
-                steps = np.einsum("nij,nj->ni", linear, self.numbers.floats(array, 3))
+                steps = self.numbers.floats(array, 3)[piece.rows]
+                steps = np.einsum("nij,nj->ni", linear, steps)
                 half = 1.0 if share.half == BOTH else left if share.half == LEFT else 1.0 - left
                 total += share.weight * steps * np.broadcast_to(half, len(points))[:, None]
             if np.abs(total).max(initial=0.0) > 1e-5:

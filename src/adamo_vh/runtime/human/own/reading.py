@@ -113,7 +113,7 @@ def _read(content: bytes, name: str) -> Own:
     notes: list[str] = []
     pieces = _held(pieces_of(document, tree, numbers, notes), bones, tree, notes)
     stature, nodes = _stature(bones, tree, pieces, notes)
-    owners = owners_of(nodes, tree)
+    owners = owners_of(nodes, tree, pieces)
     crown = max((_crown(piece, owners, stature) for piece in pieces), default=0.0)
     fit = fit_of(stature, crown, bones.spine)
     surfaces = Surfaces(document, numbers, notes)
@@ -134,14 +134,40 @@ def _read(content: bytes, name: str) -> Own:
     return Own(figure, replace(told, sha256=sha256, notes=tuple(dict.fromkeys(notes))))
 
 
-def owners_of(nodes: Mapping[str, int], tree: Tree) -> list[str]:
-    """The bone that each node is or belongs to; empty where there is none above it."""
+def owners_of(nodes: Mapping[str, int], tree: Tree, pieces: Sequence[Piece] = ()) -> list[str]:
+    """The bone that each node is or belongs to; empty where there is none above it.
+
+    Args:
+        nodes: The bones.
+        tree: All nodes.
+        pieces: Meshes whose loose bones, below none of the body, go with the nearest one.
+    """
     told = {node: bone for bone, node in nodes.items() if bone not in _WORDS}
     found = [""] * len(tree.names)
     for node in tree.order:
         parent = tree.parents[node]
         found[node] = told.get(node) or (found[parent] if parent >= 0 else "")
+    roots = {*tree.above(nodes["hips"])}
+    loose = {n for piece in pieces if piece.is_skinned for n in piece.nodes.tolist()}
+    for node in loose:
+        if not found[node] and node not in roots:
+            found[node] = _nearest(tree.place(node), told, tree)
     return found
+
+
+def _nearest(place: Array, bones: Mapping[int, str], tree: Tree) -> str:
+    """The bone that passes nearest to a place, on its way to those right below it."""
+    best, nearest = np.inf, "hips"
+    for node, bone in bones.items():
+        begin = tree.place(node)
+        ends = [tree.place(n) for n in bones if tree.parents[n] == node] or [begin]
+        for end in ends:
+            line = end - begin
+            share = float((place - begin) @ line) / max(float(line @ line), 1e-12)
+            away = float(np.linalg.norm(begin + np.clip(share, 0.0, 1.0) * line - place))
+            if away < best - 1e-9:
+                best, nearest = away, bone
+    return nearest
 
 
 _WORDS = frozenset({"spine", "chest", "upperChest"})
@@ -153,11 +179,11 @@ def _held(pieces: Sequence[Piece], bones: Bones, tree: Tree, notes: list[str]) -
     owners = owners_of(bones.nodes, tree)
     kept = []
     for piece in pieces:
-        if piece.is_skinned or owners[int(piece.nodes[0])]:
+        if any(owners[node] for node in piece.nodes.tolist()):
             kept.append(piece)
         else:
-            notes.append(f"{piece.name} hangs on no bone and is left out")
-    if not any(piece.is_skinned for piece in kept) and not kept:
+            notes.append(f"{piece.name} hangs on no bone of the body and is left out")
+    if not kept:
         raise Broken("no mesh hangs on its bones. Export the meshes with their skin.")
     return tuple(kept)
 

@@ -49,6 +49,8 @@ class Piece:
     is_skinned: bool
     targets: tuple[int | None, ...]
     """The array of each morph target's moves."""
+    rows: NDArray[np.int64]
+    """(N,) which of the file's vertices these are: primitives may share one array."""
 
     def blended(self, maps: Array) -> Array:
         """(N, 3, 4) for each vertex, the mean of maps that are given for each node, (B, 4, 4)."""
@@ -113,6 +115,7 @@ def _too_many(count: int) -> str:
 def _check_size(document: Document, numbers: Numbers) -> None:
     """Refuse what is too much before memory is taken for it."""
     corners = vertices = 0
+    counted: set[int] = set()
     for node in document.nodes:
         if node.mesh is None or node.mesh >= len(document.meshes):
             continue
@@ -120,7 +123,9 @@ def _check_size(document: Document, numbers: Numbers) -> None:
             if "POSITION" not in primitive.attributes:
                 raise Broken(f"a mesh has no positions. {AGAIN}")
             count = numbers.count(primitive.attributes["POSITION"])
-            vertices += count
+            if primitive.attributes["POSITION"] not in counted:
+                counted.add(primitive.attributes["POSITION"])
+                vertices += count
             corners += count if primitive.indices is None else numbers.count(primitive.indices)
     if corners > 3 * MOST_TRIANGLES:
         raise Broken(_too_many(corners // 3))
@@ -174,29 +179,32 @@ def _piece(
     if primitive.indices is None:
         faces = np.arange(count - count % 3).reshape(-1, 3)
     else:
-        corners = numbers.wholes(primitive.indices, 1)[:, 0]
-        faces = corners[: len(corners) - len(corners) % 3].reshape(-1, 3)
+        listed = numbers.wholes(primitive.indices, 1)[:, 0]
+        faces = listed[: len(listed) - len(listed) % 3].reshape(-1, 3)
     if len(faces) and (int(faces.max()) >= count or int(faces.min()) < 0):
         raise Broken(f"{name} has a triangle with a corner that is missing. {AGAIN}")
     if primitive.material is not None and primitive.material >= len(document.materials):
         raise Broken(f"material {primitive.material} is missing. {AGAIN}")
     slots, weights = _influences(numbers, attributes, count, len(moving[0]), moving[2])
-    channel = _channel(document, primitive)
-    uvs = attribute(f"TEXCOORD_{channel}", 2)
+    normals = attribute("NORMAL", 3)
+    uvs = attribute(f"TEXCOORD_{_channel(document, primitive)}", 2)
+    rows, corners = np.unique(faces, return_inverse=True)
     return Piece(
-        node.mesh if node.mesh is not None else -1,
-        place,
-        name,
-        primitive.material,
-        points,
-        attribute("NORMAL", 3),
-        np.zeros((count, 2)) if uvs is None else uvs,
-        faces,
-        *moving[:2],
-        slots,
-        weights,
-        moving[2],
-        tuple(target.get("POSITION") for target in primitive.targets),
+        mesh=node.mesh if node.mesh is not None else -1,
+        primitive=place,
+        name=name,
+        material=primitive.material,
+        points=points[rows],
+        normals=None if normals is None else normals[rows],
+        uvs=np.zeros((len(rows), 2)) if uvs is None else uvs[rows],
+        faces=corners.reshape(-1, 3),
+        nodes=moving[0],
+        matrices=moving[1],
+        slots=slots[rows],
+        weights=weights[rows],
+        is_skinned=moving[2],
+        targets=tuple(target.get("POSITION") for target in primitive.targets),
+        rows=rows,
     )
 
 
