@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import struct
+import time
 from functools import cache
 
 import pytest
@@ -149,6 +150,27 @@ def test_many_arrays_over_the_same_bytes_take_no_memory():
         told["meshes"][0]["extras"] = {"targetNames": names}
 
     assert own_figure_of(changed(change), "x.glb").figure.triangle_count > 0
+
+
+def test_a_long_chain_of_bones_takes_no_long_time():
+    def change(told):
+        first = len(told["nodes"])
+        count = 15_000
+        told["nodes"] += [{"children": [first + i + 1]} for i in range(count)] + [{}]
+        told["nodes"][1]["children"].append(first)
+        told["skins"][0]["joints"] += list(range(first, first + 1000))
+        del told["skins"][0]["inverseBindMatrices"]
+
+    began = time.perf_counter()
+    assert own_figure_of(changed(change), "x.glb").figure.triangle_count > 0
+    assert time.perf_counter() - began < 20
+
+
+def test_one_mesh_in_many_places_is_refused():
+    def change(told):
+        told["nodes"] += [{"mesh": 0} for _ in range(3000)]
+
+    assert "the most" in refusal(changed(change))
 
 
 def test_deep_json_is_refused():

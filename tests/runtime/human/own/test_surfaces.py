@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from typing import Any
 
 import numpy as np
 import pytest
@@ -56,7 +57,7 @@ def test_a_picture_that_repeats_is_cut_everywhere():
     assert area(cutting, SQUARE * 2 - 0.5) == pytest.approx(4 * np.pi * 0.16, rel=0.1)
 
 
-def painted(picture, material=None, *, uvs=SQUARE, texture=None):
+def painted(picture, material=None, *, uvs=SQUARE, texture=None, colours=None):
     """A figure of shoes with a square of one material on its head."""
     writer = written(Rig("unity", garments=("shoes",), plain=True), load_figure("mara"))
     points = np.array([[-0.1, 0, 0], [0.1, 0, 0], [0.1, 0.2, 0], [-0.1, 0.2, 0]])
@@ -66,7 +67,7 @@ def painted(picture, material=None, *, uvs=SQUARE, texture=None):
         image = writer.add("images", {"bufferView": writer.view(picture), "mimeType": "image/png"})
         use = writer.add("textures", {"source": image, **(texture or {})})
         told["pbrMetallicRoughness"].setdefault("baseColorTexture", {"index": use})
-    primitive = {
+    primitive: dict[str, Any] = {
         "attributes": {
             "POSITION": writer.accessor(points, "VEC3", FLOAT, VERTICES),
             "TEXCOORD_0": writer.accessor(uvs, "VEC2", FLOAT, VERTICES),
@@ -74,6 +75,9 @@ def painted(picture, material=None, *, uvs=SQUARE, texture=None):
         "indices": writer.accessor(FACES.ravel(), "SCALAR", INT, INDICES),
         "material": writer.add("materials", told),
     }
+    if colours is not None:
+        number = writer.accessor(colours, f"VEC{colours.shape[1]}", FLOAT, VERTICES)
+        primitive["attributes"]["COLOR_0"] = number
     mesh = writer.add("meshes", {"name": "card", "primitives": [primitive]})
     node = writer.add("nodes", {"name": "card", "mesh": mesh})
     writer.json["nodes"][head].setdefault("children", []).append(node)
@@ -185,3 +189,27 @@ def test_short_indices_and_weights_as_bytes_are_read():
     np.testing.assert_allclose(
         np.sort(made.weights, axis=1), np.sort(shoes.weights, axis=1)[:, :], atol=1e-3
     )
+
+
+@pytest.mark.parametrize("width", [3, 4])
+def test_colours_of_vertices_are_painted(width):
+    colours = np.tile([[0.2140, 0.0, 1.0, 1.0]], (4, 1))[:, :width]
+    made = card(painted(None, colours=colours))
+    assert len(made.vertices) == 4
+    texture = made.material.texture
+    assert np.abs(texture.reshape(-1, 3).astype(int) - [128, 0, 255]).max() < 6
+
+
+def test_where_the_colour_changes_each_triangle_has_its_own():
+    colours = np.array([[1.0, 0, 0], [1.0, 0, 0], [0, 0, 1.0], [0, 0, 1.0]])
+    made = card(painted(None, colours=colours))
+    assert len(made.vertices) == 6
+    height, width, _ = made.material.texture.shape
+    at = made.uvs[made.faces[:, 0]]
+    seen = [made.material.texture[int((1 - v) * height), int(u * width)].tolist() for u, v in at]
+    assert sorted(colour[0] > colour[2] for colour in seen) == [False, True]
+
+
+def test_a_picture_comes_before_colours_of_vertices():
+    made = card(painted(png(), colours=np.zeros((4, 3))))
+    assert made.material.texture[0, 0].tolist() == list(RED[:3])

@@ -135,7 +135,7 @@ def _with_fingers(nodes: Mapping[str, Any], thumb: tuple[str, ...]) -> dict[str,
 def _told_by_names(document: Document, tree: Tree) -> dict[str, int]:
     """What the names say, the clearest of each meaning; bones before what only holds bones."""
     joints = {joint for skin in document.skins for joint in skin.joints if joint < len(tree.names)}
-    candidates = {node for joint in joints for node in tree.above(joint)} or {*tree.order}
+    candidates = _with_above(joints, tree) or {*tree.order}
     for node in tree.order:
         if tree.parents[node] in joints:
             joints.add(node)
@@ -152,6 +152,17 @@ def _told_by_names(document: Document, tree: Tree) -> dict[str, int]:
     for side in ("left", "right"):
         _sort_out(found, side)
     _rigify(found, tree)
+    return found
+
+
+def _with_above(nodes: set[int], tree: Tree) -> set[int]:
+    """Nodes and all that are above any of them."""
+    found: set[int] = set()
+    for start in nodes:
+        node = start
+        while node >= 0 and node not in found:
+            found.add(node)
+            node = tree.parents[node]
     return found
 
 
@@ -193,10 +204,8 @@ def _trunk(found: dict[str, int], tree: Tree) -> dict[str, int]:
         return told
     above_head = tree.above(found["head"])
     if "hips" not in found:
-        legs = [found.get(side + "UpperLeg") for side in ("left", "right")]
-        if None in legs:
-            return told
-        common = [n for n in above_head if all(n in tree.above(int(leg or 0)) for leg in legs)]
+        legs = _above_both(found, "UpperLeg", tree)
+        common = [node for node in above_head if node in legs]
         if not common:
             return told
         told["hips"] = common[0]
@@ -204,8 +213,8 @@ def _trunk(found: dict[str, int], tree: Tree) -> dict[str, int]:
     if hips not in above_head:
         return told | _as_named(found)
     path = above_head[1 : above_head.index(hips)][::-1]
-    arms = [found.get(side + "UpperArm") for side in ("left", "right")]
-    holds = [n for n in path if all(arm is not None and n in tree.above(arm) for arm in arms)]
+    arms = _above_both(found, "UpperArm", tree)
+    holds = [node for node in path if node in arms]
     top = path.index(holds[-1]) + 1 if holds else len(path)
     if not holds and found.get("neck") in path:
         top = path.index(found["neck"])
@@ -213,6 +222,15 @@ def _trunk(found: dict[str, int], tree: Tree) -> dict[str, int]:
     if "neck" not in found and path[top:]:
         told["neck"] = path[top]
     return told
+
+
+def _above_both(found: Mapping[str, int], limb: str, tree: Tree) -> set[int]:
+    """The nodes above a limb of both sides; none if one is missing."""
+    above = [
+        {*tree.above(found[side + limb])} if side + limb in found else set()
+        for side in ("left", "right")
+    ]
+    return above[0] & above[1]
 
 
 def _as_named(found: Mapping[str, int]) -> dict[str, int]:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.geometry import Array
 from adamo_vh.runtime.human.looks import HEAD_GARMENTS, Garment
+from adamo_vh.runtime.human.own.colours import painted
 from adamo_vh.runtime.human.own.cutting import cut
 from adamo_vh.runtime.human.own.expressions import BOTH, LEFT, Share
 from adamo_vh.runtime.human.own.fitting import Fit
@@ -37,7 +39,7 @@ class Patch:
     normals: Array
     uvs: Array
     faces: NDArray[np.int64]
-    weights: Array
+    weights: NDArray[np.floating[Any]]
     """(N, J) shares of our joints."""
     moves: Mapping[str, Array]
     """(N, 3) by shape."""
@@ -76,7 +78,7 @@ class Making:
             faces = faces[:, ::-1]
         points = moved(maps, piece.points)
         joints = np.array([self.fit.joints[bone] for bone in bones])
-        weights = np.zeros((len(points), len(JOINTS)))
+        weights = np.zeros((len(points), len(JOINTS)), np.float32)
         rows = np.arange(len(points))
         for k in range(piece.slots.shape[1]):
             weights[rows, joints[piece.slots[:, k]]] += piece.weights[:, k]
@@ -86,7 +88,10 @@ class Making:
         if self.jaw is not None and (share := _share_of(piece, bones, "jaw")).any():
             arm = points - self.jaw
             moves["jawOpen"] = (arm @ about_y(_JAW_RAD).T - arm) * share[:, None]
-        return Patch(points, normals, uvs, faces, weights, moves, surface)
+        patch = Patch(points, normals, uvs, faces, weights, moves, surface)
+        if piece.colours is None or surface.material.texture is not None:
+            return patch
+        return _painted(patch, piece.colours)
 
     def _maps(self, piece: Piece, bones: Sequence[str]) -> Array:
         """(N, 3, 4) from the mesh's frame to the rest pose, for each vertex."""
@@ -119,6 +124,23 @@ class Making:
                 total += share.weight * steps * np.broadcast_to(half, len(points))[:, None]
             if np.abs(total).max(initial=0.0) > 1e-5:
                 yield shape, total
+
+
+def _painted(patch: Patch, colours: Array) -> Patch:
+    """A patch with the colours of its vertices as a picture."""
+    told = painted(patch.faces, colours)
+    material = replace(patch.surface.material, texture=told.picture)
+    shift = np.eye(2, 3)
+    return replace(
+        patch,
+        points=patch.points[told.rows],
+        normals=patch.normals[told.rows],
+        uvs=told.uvs,
+        faces=told.faces,
+        weights=patch.weights[told.rows],
+        moves={shape: steps[told.rows] for shape, steps in patch.moves.items()},
+        surface=replace(patch.surface, material=material, shift=shift),
+    )
 
 
 def _share_of(piece: Piece, bones: Sequence[str], bone: str) -> Array:
@@ -195,7 +217,7 @@ def _without_gaps(patch: Patch, most: int) -> Patch:
     assert surface.alpha is not None
     left = cut(patch.faces, patch.uvs, surface.alpha, surface.solid_from, most)
 
-    def mixed(values: Array) -> Array:
+    def mixed(values: NDArray[np.floating[Any]]) -> Array:
         return np.asarray(np.einsum("nk,nki->ni", left.shares, values[left.parents]))
 
     return replace(

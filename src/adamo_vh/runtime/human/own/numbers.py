@@ -53,6 +53,15 @@ class Numbers:
             raise Broken(f"array {number} holds fractions where indices belong. {AGAIN}")
         return values.astype(np.int64)
 
+    def width(self, number: int) -> int:
+        """How many numbers an entry of an array has; 0 if it is none that we know.
+
+        Raises:
+            Broken: It is not there.
+        """
+        self.count(number)
+        return _WIDTHS.get(self._document.accessors[number].type, 0)
+
     def raw(self, number: int) -> bytes:
         """The bytes of a part of the buffer.
 

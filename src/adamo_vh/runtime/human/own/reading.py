@@ -149,25 +149,26 @@ def owners_of(nodes: Mapping[str, int], tree: Tree, pieces: Sequence[Piece] = ()
         found[node] = told.get(node) or (found[parent] if parent >= 0 else "")
     roots = {*tree.above(nodes["hips"])}
     loose = {n for piece in pieces if piece.is_skinned for n in piece.nodes.tolist()}
-    for node in loose:
-        if not found[node] and node not in roots:
-            found[node] = _nearest(tree.place(node), told, tree)
+    below = [n for n in loose if not found[n] and n not in roots]
+    for node, bone in zip(below, _nearest(below, told, tree), strict=True):
+        found[node] = bone
     return found
 
 
-def _nearest(place: Array, bones: Mapping[int, str], tree: Tree) -> str:
-    """The bone that passes nearest to a place, on its way to those right below it."""
-    best, nearest = np.inf, "hips"
-    for node, bone in bones.items():
-        begin = tree.place(node)
-        ends = [tree.place(n) for n in bones if tree.parents[n] == node] or [begin]
-        for end in ends:
-            line = end - begin
-            share = float((place - begin) @ line) / max(float(line @ line), 1e-12)
-            away = float(np.linalg.norm(begin + np.clip(share, 0.0, 1.0) * line - place))
-            if away < best - 1e-9:
-                best, nearest = away, bone
-    return nearest
+def _nearest(nodes: Sequence[int], bones: Mapping[int, str], tree: Tree) -> list[str]:
+    """For each node, the bone that passes nearest to it on its way to those right below it."""
+    ways = [(node, node) for node in bones]
+    ways += [(tree.parents[node], node) for node in bones if tree.parents[node] in bones]
+    begins = np.array([tree.place(begin) for begin, _ in ways])
+    lines = np.array([tree.place(end) for _, end in ways]) - begins
+    squares = np.maximum((lines * lines).sum(axis=1), 1e-12)
+    found = []
+    for node in nodes:
+        arm = tree.place(node) - begins
+        share = np.clip((arm * lines).sum(axis=1) / squares, 0.0, 1.0)
+        away = np.linalg.norm(arm - share[:, None] * lines, axis=1)
+        found.append(bones[ways[int(away.argmin())][0]])
+    return found
 
 
 _WORDS = frozenset({"spine", "chest", "upperChest"})

@@ -17,6 +17,7 @@ from adamo_vh.runtime.human.own.tree import Tree
 
 MOST_TRIANGLES = 250_000
 MOST_VERTICES = 500_000
+MOST_PIECES = 2000
 _TRIANGLES = 4
 _MOST_SETS = 4
 """Of four influences each."""
@@ -36,6 +37,8 @@ class Piece:
     """(N, 3); None if the file has none."""
     uvs: Array
     """(N, 2), v down."""
+    colours: Array | None
+    """(N, 3) linear; None if the file has none."""
     faces: NDArray[np.int64]
     """(M, 3)."""
     nodes: NDArray[np.int64]
@@ -114,7 +117,7 @@ def _too_many(count: int) -> str:
 
 def _check_size(document: Document, numbers: Numbers) -> None:
     """Refuse what is too much before memory is taken for it."""
-    corners = vertices = 0
+    corners = vertices = pieces = 0
     counted: set[int] = set()
     for node in document.nodes:
         if node.mesh is None or node.mesh >= len(document.meshes):
@@ -123,10 +126,13 @@ def _check_size(document: Document, numbers: Numbers) -> None:
             if "POSITION" not in primitive.attributes:
                 raise Broken(f"a mesh has no positions. {AGAIN}")
             count = numbers.count(primitive.attributes["POSITION"])
+            pieces += 1
             if primitive.attributes["POSITION"] not in counted:
                 counted.add(primitive.attributes["POSITION"])
                 vertices += count
             corners += count if primitive.indices is None else numbers.count(primitive.indices)
+    if pieces > MOST_PIECES:
+        raise Broken(f"it has {pieces:,} meshes, and {MOST_PIECES:,} is the most. Join them.")
     if corners > 3 * MOST_TRIANGLES:
         raise Broken(_too_many(corners // 3))
     if vertices > MOST_VERTICES:
@@ -188,6 +194,9 @@ def _piece(
     slots, weights = _influences(numbers, attributes, count, len(moving[0]), moving[2])
     normals = attribute("NORMAL", 3)
     uvs = attribute(f"TEXCOORD_{_channel(document, primitive)}", 2)
+    colours = None
+    if (number := attributes.get("COLOR_0")) is not None and numbers.width(number) in (3, 4):
+        colours = attribute("COLOR_0", numbers.width(number))
     rows, corners = np.unique(faces, return_inverse=True)
     return Piece(
         mesh=node.mesh if node.mesh is not None else -1,
@@ -197,6 +206,7 @@ def _piece(
         points=points[rows],
         normals=None if normals is None else normals[rows],
         uvs=np.zeros((len(rows), 2)) if uvs is None else uvs[rows],
+        colours=None if colours is None else colours[rows, :3],
         faces=corners.reshape(-1, 3),
         nodes=moving[0],
         matrices=moving[1],

@@ -14,11 +14,15 @@ from adamo_vh.geometry import Array
 from adamo_vh.readable import readable
 from adamo_vh.runtime.assets.asset import Material
 from adamo_vh.runtime.human.own import fields
+from adamo_vh.runtime.human.own.colours import srgb
 from adamo_vh.runtime.human.own.fields import Document, TextureUse
 from adamo_vh.runtime.human.own.numbers import Numbers
 
 _MOST_EDGE = 8192
 """Pixels of a side of a picture that is read."""
+_MOST_PIXELS = 400_000_000
+"""Of all pictures together, as they are in the file."""
+_MOST_PICTURES = 100
 _KEPT_EDGE = 1024
 """Larger pictures are made smaller."""
 _FORMATS = ("PNG", "JPEG", "WEBP")
@@ -52,6 +56,7 @@ class Surfaces:
             notes: Takes what cannot be shown, in words.
         """
         self._document, self._numbers, self._notes = document, numbers, notes
+        self._pixels = 0
         self._pictures: dict[int, NDArray[np.uint8] | None] = {}
         self._known: dict[int | None, Surface] = {}
 
@@ -79,7 +84,7 @@ class Surfaces:
         name = readable(told.name or f"material {number}")[:60]
         picture = self._picture(use, name)
         alpha = None
-        red, green, blue = (_srgb(value) for value in factor[:3])
+        red, green, blue = (round(float(v), 9) for v in srgb(np.array(factor[:3])))
         opacity, is_seen = float(np.clip(factor[3], 0.0, 1.0)), True
         solid_from = told.cutoff if told.alpha == "MASK" else _HALF
         if told.alpha in ("MASK", "BLEND"):
@@ -133,6 +138,10 @@ class Surfaces:
                         "is the most; it has one colour"
                     )
                     return None
+                self._pixels += picture.size[0] * picture.size[1]
+                if self._pixels > _MOST_PIXELS or self.pictures >= _MOST_PICTURES:
+                    self._notes.append("its pictures are too many or too large: some are left out")
+                    return None
                 picture.draft("RGB", (_KEPT_EDGE, _KEPT_EDGE))
                 has_alpha = "A" in picture.getbands() or "transparency" in picture.info
                 made = picture.convert("RGBA" if has_alpha else "RGB")
@@ -141,13 +150,6 @@ class Surfaces:
             self._notes.append(f"{name}: its picture cannot be read, so it has one colour")
             return None
         return np.asarray(made, np.uint8)
-
-
-def _srgb(value: float) -> float:
-    """A colour as screens have it, from a linear one."""
-    value = float(np.clip(value, 0.0, 1.0))
-    shown = 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-    return round(shown, 9)
 
 
 def _shift(use: TextureUse | None) -> Array:
