@@ -15,8 +15,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.programs import need
+from typer.testing import CliRunner
 
 import adamo_vh
+from adamo_vh.cli.app import app
 from adamo_vh.inference.messages import AIMessage, ToolCall
 from adamo_vh.inference.players.scripted import ScriptedModel
 
@@ -100,6 +102,18 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="module")
+def exported(runs: Path) -> Path:
+    """The same runs, each as one HTML file."""
+    folder = runs.parent / "exported"
+    for run in ("run", "evil"):
+        written = CliRunner().invoke(
+            app, ["export", str(runs / run), "--to", "page", "--out", str(folder)]
+        )
+        assert written.exit_code == 0, written.output
+    return folder
+
+
 @contextmanager
 def studio(runs: Path, out: Path, *more: str) -> Iterator[str]:
     """A studio as a user starts it; its address."""
@@ -132,7 +146,9 @@ def test_its_logic_is_right(source: Path) -> None:
 
 
 @pytest.mark.extras
-def test_it_does_in_a_browser_what_it_is_for(source: Path, runs: Path, tmp_path: Path) -> None:
+def test_it_does_in_a_browser_what_it_is_for(
+    source: Path, runs: Path, exported: Path, tmp_path: Path
+) -> None:
     with studio(runs, tmp_path / "rooms") as address:
         npm(
             source,
@@ -141,6 +157,7 @@ def test_it_does_in_a_browser_what_it_is_for(source: Path, runs: Path, tmp_path:
             STUDIO_URL=address,
             STUDIO_RUN="run",
             STUDIO_EVIL_RUN="evil",
+            STUDIO_EXPORTED=str(exported),
             STUDIO_PICTURES=str(tmp_path / "pictures"),
         )
 

@@ -1,5 +1,6 @@
 import { expect, test } from "vitest";
 import { Conversation, isQuestion, type TurnItem } from "../src/mind/conversation.ts";
+import { memoryWords } from "../src/mind/memory.ts";
 import { callCode, callWords, clock, spentWords, spoken } from "../src/mind/words.ts";
 import type { EventMessage, Hello, RunEvent } from "../src/protocol.ts";
 import { readMessage } from "../src/reading.ts";
@@ -78,4 +79,13 @@ test("what is not known is not shown as nothing", () => {
   expect(spentWords([1200, 30], null)).toBe("1,200 tokens in, 30 out");
   expect(spentWords([1200, 30], 0.5)).toBe("1,200 tokens in, 30 out, $0.50");
   expect(clock(75.9)).toBe("1:15");
+});
+
+test("a turn keeps the state that was read, and says how far back she remembers", () => {
+  const story = new Conversation();
+  story.add(told(1, { type: "thought", step: 1, messages: 5, state_text: "# State", turn: { reply: { message: { text: "" }, usage: {} }, wishes: [] } }));
+  const turn = story.items[0] as TurnItem;
+  expect(turn.state).toBe("# State");
+  expect(memoryWords(turn, 50)).toBe("She read 5 messages. At most the last 50 steps are kept.");
+  expect(memoryWords(null, 50)).toBe("She has not thought yet.");
 });

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, expect, test, vi } from "vitest";
 import { CALM_MS, Checking } from "../src/edit/checking.ts";
-import { Draft, placeOf } from "../src/edit/draft.ts";
+import { Draft, MOST_LIGHTS, placeOf } from "../src/edit/draft.ts";
 import { along } from "../src/edit/orbit.ts";
 import { saving } from "../src/edit/remote.ts";
 import { type Catalog, type Finding, readCatalog, readScene, type SceneData, targetOf } from "../src/edit/scene.ts";
@@ -196,4 +196,20 @@ test("that a check failed is told", async () => {
   await vi.advanceTimersByTimeAsync(CALM_MS);
   expect(checking.problem).toBe("The server is gone.");
   expect(checking.isBusy).toBe(false);
+});
+
+test("lights are added, moved with what they shine at, and removed but for the last", () => {
+  const draft = new Draft(scene());
+  draft.addLight([1, 1]);
+  expect(draft.selected).toEqual({ kind: "lights", index: 1 });
+  expect(draft.data.lights[1]).toEqual({ position: [1, 1, 2.9], target: [1, 1, 0], diffuse: 0.3, shadow: false });
+  draft.place({ kind: "lights", index: 1 }, [2, 1.5]);
+  expect(draft.data.lights[1]).toMatchObject({ position: [2, 1.5, 2.9], target: [2, 1.5, 0] });
+  draft.remove({ kind: "lights", index: 0 });
+  draft.remove({ kind: "lights", index: 0 });
+  expect(draft.data.lights).toHaveLength(1);
+  draft.undo();
+  expect(draft.data.lights).toHaveLength(2);
+  for (let i = 0; i < 9; i++) draft.addLight([0, 0]);
+  expect(draft.data.lights).toHaveLength(MOST_LIGHTS);
 });

@@ -81,3 +81,10 @@ test("quality falls where frames are slow and does not swing back", () => {
   for (let i = 0; i < 60; i++) quality.note(5);
   expect(quality.level).toBeLessThan(LEVELS.length - 1);
 });
+
+test("a small picture stays sharp however slow it is", () => {
+  const quality = new Quality(true);
+  for (let i = 0; i < 60; i++) quality.note(300);
+  expect(quality.share(370 * 380)).toBe(1);
+  expect(quality.share(1280 * 720)).toBeCloseTo(0.51, 2);
+});

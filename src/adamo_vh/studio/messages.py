@@ -81,6 +81,7 @@ def hello(part: Part, manifest: Manifest, body: BodyInfo | None, title: str, at:
             "profile": str(config.profile),
             "labeling": manifest.labeling or config.labeling.value,
             "resolution": list(config.resolution),
+            "k": config.k,
             "started_at": manifest.started_at,
         },
         "scene": {

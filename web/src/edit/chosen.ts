@@ -3,7 +3,7 @@
 import { el, fill, write } from "../dom.ts";
 import { choiceField, type Field, numberField, shareField, textField } from "./controls.ts";
 import { type Draft, placeOf } from "./draft.ts";
-import { type Catalog, keyOf, nameOf, type Ref, type Two } from "./scene.ts";
+import { type Catalog, keyOf, nameOf, type Ref, type SceneLight, type Two } from "./scene.ts";
 import { levels } from "./support.ts";
 
 const TURN_DEG = 15;
@@ -46,6 +46,26 @@ export function lightField(draft: Draft, index: number): Field {
   );
 }
 
+function lightFields(draft: Draft, ref: Ref): Field[] {
+  const light = (): SceneLight | undefined => draft.data.lights[ref.index];
+  const number = (label: string, end: "position" | "target", axis: 0 | 1 | 2): Field =>
+    numberField(draft, label, 0.05, () => light()?.[end][axis] ?? 0, (value) =>
+      draft.edit(({ lights: { [ref.index]: changed } }) => {
+        if (changed) changed[end][axis] = value;
+      }, `light ${ref.index} ${end} ${axis}`),
+    );
+  const shadow = choiceField(
+    draft,
+    "Casts shadows",
+    () => ["no", "yes"],
+    () => (light()?.shadow ? "yes" : "no"),
+    // More than one that does would draw the scene again for each.
+    (value) => draft.edit(({ lights }) => lights.forEach((each, index) => (each.shadow = index === ref.index ? value === "yes" : each.shadow && value === "no"))),
+  );
+  const to = [number("Shines at x (m)", "target", 0), number("Shines at y (m)", "target", 1), number("Shines at height (m)", "target", 2)];
+  return [lightField(draft, ref.index), shadow, ...placeFields(draft, ref), number("Height (m)", "position", 2), ...to];
+}
+
 export function ambientField(draft: Draft): Field {
   return shareField(draft, "From everywhere", () => draft.data.ambient, (value) =>
     draft.edit((data) => {
@@ -57,7 +77,7 @@ export function ambientField(draft: Draft): Field {
 function fieldsOf(draft: Draft, catalog: Catalog, ref: Ref): Field[] {
   const { kind, index } = ref;
   if (kind === "areas") return areaFields(draft, index);
-  if (kind === "lights") return [lightField(draft, index), ...placeFields(draft, ref)];
+  if (kind === "lights") return lightFields(draft, ref);
   if (kind === "agent") return [...placeFields(draft, ref), turnField(draft, ref)];
   if (kind === "furniture") {
     const name = textField(draft, "Name", 60, () => draft.data.furniture[index]?.name ?? "", (value) => draft.rename(index, value));
@@ -82,9 +102,11 @@ function buttons(draft: Draft, ref: Ref): HTMLElement {
     { class: "row" },
     turns && button("Turn left", () => draft.turn(ref, TURN_DEG)),
     turns && button("Turn right", () => draft.turn(ref, -TURN_DEG)),
-    ref.kind !== "agent" && button("Remove", () => draft.remove(ref), "danger"),
+    ref.kind !== "agent" && !isLastLight(draft, ref) && button("Remove", () => draft.remove(ref), "danger"),
   );
 }
+
+const isLastLight = ({ data }: Draft, { kind }: Ref): boolean => kind === "lights" && data.lights.length === 1;
 
 /** For those who do not see it move. */
 function whereWords({ data }: Draft, ref: Ref): string {
@@ -104,7 +126,8 @@ export function buildChosen(draft: Draft, catalog: Catalog): HTMLElement {
   let made: Field[] = [];
   const update = (): void => {
     const { selected, data } = draft;
-    const key = selected ? keyOf(selected) : "none";
+    // Whether a light may be removed depends on the others.
+    const key = selected ? `${keyOf(selected)} ${data.lights.length}` : "none";
     heading.textContent = (selected && nameOf(data, selected)) || "Nothing selected";
     if (key !== shown) {
       shown = key;

@@ -6,6 +6,10 @@ import { FLOOR, pieceOf, radians, turned } from "./support.ts";
 
 const MOST_UNDONE = 200;
 const MOST_ID = 9999;
+/** A scene has at least one light, and at most so many. */
+export const MOST_LIGHTS = 6;
+/** Below the ceiling, metres. */
+const LIGHT_BELOW_M = 0.1;
 
 /** To the centimetre and the degree: what a hand means. */
 export const cm = (value: number): number => Math.round(value * 100) / 100 + 0;
@@ -102,8 +106,7 @@ export class Draft {
       } else if (ref.kind === "furniture") moveFurniture(data, ref.index, [cm(x), cm(y)]);
       else if (ref.kind === "areas") moveArea(data, ref.index, [x, y]);
       else {
-        const light = data.lights[ref.index];
-        if (light) light.position = [cm(x), cm(y), light.position[2]];
+        moveLight(data, ref.index, [cm(x), cm(y)]);
       }
     }, key);
   }
@@ -124,6 +127,7 @@ export class Draft {
   remove(ref: Ref): void {
     const name = nameOf(this.now, ref);
     if (ref.kind === "agent" || !name) return;
+    if (ref.kind === "lights" && this.now.lights.length === 1) return;
     this.ref = null;
     const kind = ref.kind;
     this.edit((data) => {
@@ -149,7 +153,14 @@ export class Draft {
     this.add("areas", (data) => data.areas.push({ name, kind: "area", ...corners }));
   }
 
-  private add(kind: "objects" | "furniture" | "areas", change: (data: SceneData) => void): void {
+  /** A light under the ceiling that shines straight down. */
+  addLight([x, y]: Two): void {
+    if (this.now.lights.length >= MOST_LIGHTS) return;
+    const [left, ahead, up] = [cm(x), cm(y), cm(this.now.room.height_m - LIGHT_BELOW_M)];
+    this.add("lights", (data) => data.lights.push({ position: [left, ahead, up], target: [left, ahead, 0], diffuse: 0.3, shadow: false }));
+  }
+
+  private add(kind: "objects" | "furniture" | "areas" | "lights", change: (data: SceneData) => void): void {
     this.ref = { kind, index: this.now[kind].length };
     this.edit(change);
   }
@@ -207,6 +218,15 @@ function turnAgent(data: SceneData, degrees: number): void {
   const [dx, dy] = turned([agent.gaze[0] - x, agent.gaze[1] - y], radians(degrees));
   agent.gaze = [mm(x + dx), mm(y + dy), agent.gaze[2]] as Three;
   agent.heading_deg = upright(agent.heading_deg + degrees);
+}
+
+/** It goes on shining the same way. */
+function moveLight(data: SceneData, index: number, [x, y]: Two): void {
+  const light = data.lights[index];
+  if (!light) return;
+  const [px, py, z] = light.position;
+  light.target = [mm(light.target[0] + x - px), mm(light.target[1] + y - py), light.target[2]];
+  light.position = [x, y, z];
 }
 
 function moveArea(data: SceneData, index: number, [x, y]: Two): void {

@@ -12,6 +12,8 @@ const NUDGE_M = 0.05;
 /** A surface whose outward direction points up at least this much carries things. */
 const LEVEL = 0.8;
 const CLICK_PX = 5;
+/** What carries nothing. */
+const LOOKED_THROUGH: readonly Ref["kind"][] = ["areas", "agent", "objects", "lights"];
 
 interface Grip {
   ref: Ref;
@@ -50,7 +52,7 @@ export function takeHold(canvas: HTMLCanvasElement, picture: Picture, draft: Dra
       if (point) draft.place(ref, inside(draft, [point.x + offset[0], point.y + offset[1]]), "", key);
       return;
     }
-    const hit = picture.at(event, (other) => isSame(other, ref) || other.kind === "areas" || other.kind === "agent" || other.kind === "objects");
+    const hit = picture.at(event, (other) => isSame(other, ref) || LOOKED_THROUGH.includes(other.kind));
     const level = hit && hit.normal.z > LEVEL ? levelAt(draft.data, catalog, [hit.point.x, hit.point.y, hit.point.z]) : null;
     if (hit && level) draft.place(ref, [hit.point.x, hit.point.y], level.support, key);
   };

@@ -4,7 +4,7 @@ import { el, fill, write } from "../dom.ts";
 import type { Checking } from "./checking.ts";
 import { ambientField, lightField } from "./chosen.ts";
 import type { Field } from "./controls.ts";
-import type { Draft } from "./draft.ts";
+import { type Draft, MOST_LIGHTS } from "./draft.ts";
 import { assetWords, type Catalog, type Finding, isSame, nameOf, type Ref, type SceneData, targetOf, type Two } from "./scene.ts";
 import { freeSpot, levels, pieceOf } from "./support.ts";
 
@@ -60,6 +60,10 @@ export function buildPalette(draft: Draft, catalog: Catalog, middle: () => Two):
       ),
     );
   const group = (words: string, content: HTMLElement): HTMLElement => el("details", {}, el("summary", {}, words), content);
+  const light = el("button", { class: "button small", type: "button", on: { click: () => draft.addLight(middle()) } }, "Add a light");
+  draft.changes.listen(() => {
+    light.disabled = draft.data.lights.length >= MOST_LIGHTS;
+  });
   const area = el("button", { class: "button small", type: "button", on: { click: () => draft.addArea(middle()) } }, "Add an area");
   return el(
     "section",
@@ -67,14 +71,15 @@ export function buildPalette(draft: Draft, catalog: Catalog, middle: () => Two):
     el("h2", {}, "Add"),
     group("Objects", chips(catalog.objects.keys(), (name) => addObject(draft, catalog, name, middle))),
     group("Furniture", chips(catalog.furniture.keys(), (name) => draft.addFurniture(name, middle()))),
-    el("div", { class: "row" }, area),
+    el("div", { class: "row" }, area, light),
   );
 }
 
-const KINDS: readonly [Exclude<Ref["kind"], "agent" | "lights">, string][] = [
+const KINDS: readonly [Exclude<Ref["kind"], "agent">, string][] = [
   ["furniture", "Furniture"],
   ["objects", "Objects"],
   ["areas", "Areas"],
+  ["lights", "Lights"],
 ];
 
 /** Everything that is there. */

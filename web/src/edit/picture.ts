@@ -21,7 +21,7 @@ import { Overlay } from "../view/overlay.ts";
 import { across } from "../view/pointing.ts";
 import type { Draft } from "./draft.ts";
 import { Orbit } from "./orbit.ts";
-import { areaMesh, Assets, loadShell, startMesh } from "./pieces.ts";
+import { areaMesh, Assets, lightMesh, loadShell, startMesh } from "./pieces.ts";
 import { meshOfScene } from "./remote.ts";
 import { type Catalog, isSame, keyOf, nameOf, type Ref, type SceneData, type Three } from "./scene.ts";
 import { heightOf, radians } from "./support.ts";
@@ -113,6 +113,9 @@ export class Picture {
     });
     data.areas.forEach((area, index) => {
       show({ kind: "areas", index }, JSON.stringify([area.min, area.max]), () => areaMesh(area));
+    });
+    data.lights.forEach((light, index) => {
+      show({ kind: "lights", index }, JSON.stringify(light), () => lightMesh(light)).position.set(...light.position);
     });
     const start = show({ kind: "agent", index: 0 }, "", startMesh);
     start.position.set(...data.agent.position, 0);

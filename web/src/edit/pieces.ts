@@ -2,12 +2,14 @@
 
 import {
   BoxGeometry,
+  BufferGeometry,
   ConeGeometry,
   CylinderGeometry,
   DoubleSide,
   EdgesGeometry,
   FrontSide,
   Group,
+  Line,
   LineBasicMaterial,
   LineSegments,
   type Material,
@@ -16,17 +18,22 @@ import {
   MeshLambertMaterial,
   type Object3D,
   PlaneGeometry,
+  SphereGeometry,
+  Vector3,
 } from "three";
 import { loadGltf, meshesIn, nodesByName } from "../view/loading.ts";
 import { mattLook } from "../view/surfaces.ts";
 import { meshOfAsset } from "./remote.ts";
-import type { FloorArea, SceneData, Three } from "./scene.ts";
+import type { FloorArea, SceneData, SceneLight, Three } from "./scene.ts";
 
 const ACCENT = 0xf0976a;
 const WAITING = new MeshLambertMaterial({ color: 0x9a8d80, transparent: true, opacity: 0.45 });
 const AREA = new MeshBasicMaterial({ color: 0x3f86b8, transparent: true, opacity: 0.22, side: DoubleSide, depthWrite: false });
 const EDGE = new LineBasicMaterial({ color: 0x2f6f9f });
 const BODY = new MeshLambertMaterial({ color: ACCENT, transparent: true, opacity: 0.75 });
+const LAMP = new MeshBasicMaterial({ color: 0xffd36b });
+const LAMP_LINE = new LineBasicMaterial({ color: 0xd99a1c });
+const BEAM_M = 0.6;
 const FLOOR_COLOUR = 0xb79a78;
 
 /** Loads each asset once; until it is there, a box of its size stands for it. */
@@ -99,6 +106,13 @@ export function areaMesh({ min, max }: FloorArea): Object3D {
   const group = new Group().add(new Mesh(plane, AREA), new LineSegments(new EdgesGeometry(plane), EDGE));
   group.position.set((min[0] + max[0]) / 2, (min[1] + max[1]) / 2, 0.012);
   return group;
+}
+
+/** A lamp with a line to what it shines at; the brighter it is, the larger. */
+export function lightMesh({ position, target, diffuse }: SceneLight): Object3D {
+  const way = new Vector3(...target).sub(new Vector3(...position));
+  const beam = new BufferGeometry().setFromPoints([new Vector3(), way.setLength(Math.min(way.length(), BEAM_M))]);
+  return new Group().add(new Mesh(new SphereGeometry(0.06 + 0.06 * diffuse, 16, 12), LAMP), new Line(beam, LAMP_LINE));
 }
 
 /** A person in outline, looking along x. */

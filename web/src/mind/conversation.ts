@@ -35,6 +35,8 @@ export interface TurnItem {
   usd: number | null;
   seconds: number;
   messages: number;
+  /** What she was told of the room and of herself. */
+  state: string;
 }
 
 export interface SaidItem {
@@ -134,6 +136,7 @@ export class Conversation {
       usd: event.usd,
       seconds: event.seconds,
       messages: event.messages,
+      state: event.state_text,
     });
   }
 

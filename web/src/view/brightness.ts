@@ -1,5 +1,5 @@
 // How bright a place of the room is: the lamp near the ceiling, the day from the window, and what all
-// surfaces give back. Worked out once for what stands still; what moves works it out while it is drawn.
+// surfaces give back. The lights of the full look stand where these do.
 
 import { Color, Vector3 } from "three";
 import type { SceneShape } from "../protocol.ts";
@@ -17,7 +17,9 @@ const SKY_SHARE = 1.55;
 /** The lamp is as wide as this to each side, so that shadows have soft edges. */
 const LAMP_HALF_M = 0.22;
 const LAMP_SPOTS = [[-1, -0.4], [0.4, -1], [1, 0.4], [-0.4, 1]].map(([x = 0, y = 0]) => new Vector3(x, y, 0).multiplyScalar(LAMP_HALF_M));
+/** Cosines between which the lamp fades out. */
 const [OUTER, INNER] = [Math.cos(LAMP.angle), Math.cos(LAMP.angle * (1 - LAMP.penumbra))];
+
 /** Where the light of a room comes from. */
 export interface Sources {
   lamp: Vector3;

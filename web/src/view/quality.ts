@@ -16,6 +16,8 @@ export const LEVELS: readonly Level[] = [
 
 /** A movement that is slower than this gets coarser pictures, and one that is faster sharper ones; milliseconds a picture. */
 const PACE = { card: { slow: 80, fast: 24 }, processor: { slow: 115, fast: 70 } } as const;
+/** Fewer pixels than this save no time: corners of triangles take more. */
+const LEAST = 240_000;
 /** So many frames are looked at before the level changes again. */
 const CALM = 8;
 
@@ -51,6 +53,14 @@ export class Quality {
     this.count = 0;
     this.frameMs = 0;
     return true;
+  }
+
+  /**
+   * Share of the screen's own pixels that pictures of a movement have.
+   * @param all How many pixels those are.
+   */
+  share(all: number): number {
+    return Math.min(1, Math.max(this.current.pixels, Math.sqrt(LEAST / all)));
   }
 
   get current(): Level {

@@ -15,7 +15,7 @@ import { Voxels } from "./voxels.ts";
 /** The longest edge where shades are to be seen within a surface. */
 const FINE_M = 0.2;
 /** What is moved further than this, metres, or turned so, is lit anew. */
-const LIT_AGAIN = 0.04;
+const LIT_AGAIN = 0.1;
 const SHELL = ["walls", "ceiling", "parquet", "outside"];
 
 /** What a mesh is made of in the file, and how that is drawn. */
@@ -83,7 +83,10 @@ export class Room {
   private look(mesh: Mesh, own: Material): Looks {
     const isStill = this.fixed.includes(mesh);
     // Two of a kind share their shape, but not their light.
-    if (!isStill) mesh.geometry = sharing(mesh.geometry);
+    if (!isStill) {
+      mesh.geometry = sharing(mesh.geometry);
+      this.lit.set(mesh, mesh.matrixWorld.clone());
+    }
     if (own.name === "outside") this.plain.shine(mesh.geometry);
     else this.plain.light(mesh.geometry, own, mesh.matrixWorld, isStill);
     return { mesh, own, plain: this.plain.look(own), full: fullLook(own, this.ambience) };
@@ -101,9 +104,9 @@ export class Room {
       if (!thing?.visible) continue;
       const before = this.lit.get(mesh);
       thing.updateWorldMatrix(false, true);
-      if (before && isNear(before, mesh.matrixWorld)) continue;
-      this.lit.set(mesh, mesh.matrixWorld.clone());
-      if (before) this.plain.light(mesh.geometry, own, mesh.matrixWorld, false);
+      if (!before || isNear(before, mesh.matrixWorld)) continue;
+      before.copy(mesh.matrixWorld);
+      this.plain.light(mesh.geometry, own, mesh.matrixWorld, false);
     }
   }
 

@@ -29,6 +29,8 @@ const REFLECTED = 0.8;
 /** After so long without a change the picture is drawn sharp. */
 const STILL_MS = 350;
 
+const ratio = (): number => Math.min(devicePixelRatio, 2);
+
 /** Is called before each picture; returns whether something changed that the picture shows. */
 export type Tick = (seconds: number) => boolean;
 
@@ -147,17 +149,22 @@ export class Stage {
     const canvas = this.renderer.domElement;
     const { clientWidth: width, clientHeight: height } = canvas;
     if (!width || !height) return;
-    this.setPixels(this.quality.current.pixels);
+    this.setPixels(this.movingShare);
     this.cameras.resize(width, height);
     this.lights.shadowSize(this.quality.current.shadow);
     this.dirty = true;
+  }
+
+  private get movingShare(): number {
+    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
+    return this.quality.share(width * height * ratio() ** 2);
   }
 
   /** Draw with a share of the screen's own pixels. */
   private setPixels(share: number): void {
     const canvas = this.renderer.domElement;
     // Once for all: a processor that draws takes its time for each new size.
-    this.renderer.setDrawingBufferSize(canvas.clientWidth, canvas.clientHeight, Math.min(devicePixelRatio, 2) * share);
+    this.renderer.setDrawingBufferSize(canvas.clientWidth, canvas.clientHeight, ratio() * share);
     this.stats.pixels = `${canvas.width}x${canvas.height}`;
     this.isSharp = share >= 1;
   }
@@ -191,7 +198,7 @@ export class Stage {
       return;
     }
     this.dirty = false;
-    if (this.isSharp && this.quality.current.pixels < 1) this.setPixels(this.quality.current.pixels);
+    if (this.isSharp && this.movingShare < 1) this.setPixels(this.movingShare);
     this.draw();
     this.drawnAt = now;
     const spent = performance.now() - begin;
