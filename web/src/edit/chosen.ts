@@ -40,8 +40,8 @@ function areaFields(draft: Draft, index: number): Field[] {
   return [words("Name", "name"), words("Kind", "kind"), ...edges];
 }
 
-export function lightField(draft: Draft, index: number): Field {
-  return shareField(draft, `Light ${index + 1}`, () => draft.data.lights[index]?.diffuse ?? 0, (value) =>
+export function lightField(draft: Draft, index: number, label = `Light ${index + 1}`): Field {
+  return shareField(draft, label, () => draft.data.lights[index]?.diffuse ?? 0, (value) =>
     draft.edit(({ lights: { [index]: light } }) => light && Object.assign(light, { diffuse: value }), `light ${index}`),
   );
 }
@@ -63,7 +63,7 @@ function lightFields(draft: Draft, ref: Ref): Field[] {
     (value) => draft.edit(({ lights }) => lights.forEach((each, index) => (each.shadow = index === ref.index ? value === "yes" : each.shadow && value === "no"))),
   );
   const to = [number("Shines at x (m)", "target", 0), number("Shines at y (m)", "target", 1), number("Shines at height (m)", "target", 2)];
-  return [lightField(draft, ref.index), shadow, ...placeFields(draft, ref), number("Height (m)", "position", 2), ...to];
+  return [lightField(draft, ref.index, "Brightness"), shadow, ...placeFields(draft, ref), number("Height (m)", "position", 2), ...to];
 }
 
 export function ambientField(draft: Draft): Field {
