@@ -33,6 +33,7 @@ _PLAIN = Outcome(
     model_calls=4,
     requests=4,
     protocol_failures=0,
+    cut_prompts=0,
     missing_notes=0,
     refused=0,
     corrected=0,

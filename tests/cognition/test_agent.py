@@ -176,5 +176,6 @@ def test_a_provider_fault_breaks_the_episode_without_a_score(engine: BuiltinEngi
 def test_a_short_memory_still_works(engine: BuiltinEngine) -> None:
     answers = [says(f"n{i}", PICK) for i in range(6)] + [says("done")]
     model = Recorder(lambda i: Reply(answers[i]))
-    run(engine, model, k=2)
+    _, trajectory = run(engine, model, k=2)
     assert max(len(prompt) for prompt in model.prompts) == 3 + 2 * 2
+    assert [thought.forgotten for thought in trajectory.thoughts] == [0, 0, 0, 1]

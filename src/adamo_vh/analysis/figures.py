@@ -79,6 +79,8 @@ class Figures:
     corrected: float | None
     protocol_failures: float | None
     missing_notes: float | None
+    cut_prompts: float | None
+    """Model calls whose prompt no longer held every reply before; None if any record tells not."""
     walked_m: float | None
     path_ratio: float | None
     """Metres walked over the oracle's, of complete episodes; None if no way is known or needed."""
@@ -137,6 +139,9 @@ def figures(cells: Sequence[Cell]) -> Figures:
         corrected=average(lambda o: o.corrected),
         protocol_failures=average(lambda o: o.protocol_failures),
         missing_notes=average(lambda o: o.missing_notes),
+        cut_prompts=None
+        if any(o.cut_prompts is None for o in episodes)
+        else average(lambda o: o.cut_prompts),
         walked_m=average(lambda o: o.walked_m),
         path_ratio=_path_ratio(episodes),
         solved=solved,

@@ -110,6 +110,8 @@ class Outcome:
     """Of the world at the end."""
     assisted: bool = False
     """Whether a person took part other than by what was said; see `EpisodeResult`."""
+    cut_prompts: int | None = None
+    """Model calls whose prompt no longer held every reply before; None if the record tells not."""
     isolation: Isolation = ""
     """How far a program that decided was kept from all but its body; see `EpisodeResult`."""
 
@@ -200,6 +202,7 @@ def outcome_of(
         requests=result.requests,
         protocol_failures=result.unreadable,
         missing_notes=result.missing_notes,
+        cut_prompts=_cut_prompts(trajectory),
         refused=done[action.Outcome.REFUSED],
         corrected=done[action.Outcome.CORRECTED],
         usage=result.usage,
@@ -264,6 +267,11 @@ def _recorded(config: EpisodeConfig) -> Task | None:
         return config.scored_task
     except ConfigError:
         return None
+
+
+def _cut_prompts(trajectory: Trajectory) -> int | None:
+    told = [thought.forgotten for thought in trajectory.thoughts]
+    return None if None in told else sum(map(bool, told))
 
 
 def _claim(instruction: str, trajectory: Trajectory, result: EpisodeResult) -> bool | None:

@@ -16,7 +16,7 @@ _DIGITS = 6
 _PLAIN = (
     "calls model_calls requests tokens input_tokens cached_tokens output_tokens reasoning_tokens "
     "tokens_estimated early_stops false_claims refused corrected protocol_failures missing_notes "
-    "walked_m path_ratio solved cost_usd cost_per_solved_usd tokens_per_solved"
+    "cut_prompts walked_m path_ratio solved cost_usd cost_per_solved_usd tokens_per_solved"
 )
 
 

@@ -102,7 +102,8 @@ class Agent:
         self._stops = Stops(config.limits, guards, known, oversight)
         self._telling = Telling((self._stops, *records), observers)
         self._tools = offered(server.actions, config.profile)
-        self._steps = 0
+        self._steps = self._replies = 0
+        """Calls that were executed or refused, and replies that the memory was told of."""
         self._errand = Errand(0, Doubts(config.profile))
         self._state_hash = self._seen_state = ""
         """Digests of the world after the last answer of the server, and at the last view."""
@@ -148,7 +149,9 @@ class Agent:
         # Only the reply's own time counts: waits do not, and a recorded reply took its time before.
         self._errand.watch.leave_out(time.monotonic() - asked - reply.seconds)
         turn = read_turn(reply, self._profile)
-        self._tell(Thought(self._steps, self._memory.state_text, len(messages), turn))
+        state_text, held = self._memory.state_text, sum(m.role == "ai" for m in messages)
+        forgotten = max(0, self._replies - held)
+        self._tell(Thought(self._steps, state_text, len(messages), turn, forgotten))
         return turn
 
     def act(self, turn: Turn) -> None:
@@ -160,7 +163,7 @@ class Agent:
             why_not = self._why_not(wish, results)
             results.append(self._left_out(wish, why_not) if why_not else self._carry_out(wish))
         self._look_again(results)
-        self._memory.add_step(*self._remembered(turn.message, results))
+        self._remember(*self._remembered(turn.message, results))
 
     def happened(self, event: WorldEvent, state_hash: str, *, by_user: bool = False) -> None:
         """Take note that something happened in the world which the body did not do.
@@ -210,7 +213,7 @@ class Agent:
         """Remember a turn without an action; every call gets the same answer."""
         if turn.goes_back:
             results = [self._result(wish, text) for wish in turn.wishes]
-            self._memory.add_step(turn.message, *results)
+            self._remember(turn.message, *results)
 
     def _why_not(self, wish: Wish, results: Sequence[Result]) -> str:
         """Why a call is left out; empty if it is to be executed."""
@@ -232,7 +235,11 @@ class Agent:
         self._tell(Vetoed(self._steps, why))
         told = f"the user did not allow it: {why.rstrip('.')}"
         results = [self._left_out(wish, told) for wish in turn.wishes]
-        self._memory.add_step(*self._remembered(turn.message, results))
+        self._remember(*self._remembered(turn.message, results))
+
+    def _remember(self, message: AIMessage, *results: Result) -> None:
+        self._replies += 1
+        self._memory.add_step(message, *results)
 
     def _left_out(self, wish: Wish, why_not: str) -> Result:
         self._tell(LeftOut(self._steps, wish.call.id, wish.call.name, why_not))

@@ -69,6 +69,8 @@ class Thought:
     """How many messages the prompt had."""
     turn: Turn
     """The reply, and what each of its calls wishes."""
+    forgotten: int | None = None
+    """How many replies before it the prompt no longer held; None in records that do not tell."""
     type: Literal["thought"] = "thought"
 
     @property

@@ -208,19 +208,19 @@ SEM | GPT-4o (paper) | 6.86 | 49.04 | – | –
 SEM | Claude 3.5 Sonnet (paper) | 7.77 | 39.13 | – | –
 """,
     "conduct": """
-labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | walked, m | path / oracle’s
-all labelings | baseline | 0.75 | 0.75 | 25.0 % | 25.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-all labelings | openai:gpt-4o | 0.50 | 0.50 | 50.0 % | 50.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-all labelings | GPT-4o (paper) | 0.65 | – | – | – | – | – | – | – | – | –
-all labelings | Claude 3.5 Sonnet (paper) | 0.59 | – | – | – | – | – | – | – | – | –
-OPAQ | baseline | 0.60 | 0.60 | 40.0 % | 40.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-OPAQ | openai:gpt-4o | 0.37 | 0.37 | 63.3 % | 63.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-OPAQ | GPT-4o (paper) | 0.52 | – | – | – | – | – | – | – | – | –
-OPAQ | Claude 3.5 Sonnet (paper) | 0.43 | – | – | – | – | – | – | – | – | –
-SEM | baseline | 0.90 | 0.90 | 10.0 % | 10.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-SEM | openai:gpt-4o | 0.63 | 0.63 | 36.7 % | 36.7 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-SEM | GPT-4o (paper) | 0.78 | – | – | – | – | – | – | – | – | –
-SEM | Claude 3.5 Sonnet (paper) | 0.74 | – | – | – | – | – | – | – | – | –
+labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | cut prompts | walked, m | path / oracle’s
+all labelings | baseline | 0.75 | 0.75 | 25.0 % | 25.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+all labelings | openai:gpt-4o | 0.50 | 0.50 | 50.0 % | 50.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+all labelings | GPT-4o (paper) | 0.65 | – | – | – | – | – | – | – | – | – | –
+all labelings | Claude 3.5 Sonnet (paper) | 0.59 | – | – | – | – | – | – | – | – | – | –
+OPAQ | baseline | 0.60 | 0.60 | 40.0 % | 40.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+OPAQ | openai:gpt-4o | 0.37 | 0.37 | 63.3 % | 63.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+OPAQ | GPT-4o (paper) | 0.52 | – | – | – | – | – | – | – | – | – | –
+OPAQ | Claude 3.5 Sonnet (paper) | 0.43 | – | – | – | – | – | – | – | – | – | –
+SEM | baseline | 0.90 | 0.90 | 10.0 % | 10.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+SEM | openai:gpt-4o | 0.63 | 0.63 | 36.7 % | 36.7 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+SEM | GPT-4o (paper) | 0.78 | – | – | – | – | – | – | – | – | – | –
+SEM | Claude 3.5 Sonnet (paper) | 0.74 | – | – | – | – | – | – | – | – | – | –
 """,
     "prompts": """
 task | prompt | family | conditions | ACT | REF | REL | C-D printed | C-D computed
@@ -425,13 +425,13 @@ reasoning | goal forgotten | A part of the instruction was never named nor tried
 protocol | unreadable | Replies could not be read as a call or an answer. | 2 | 2 | 4 | 13.8 %
 """,
     "ablation-k": """
-model | k | completion | would it repeat? | other tasks? | Look + first | model calls | s/call | tokens | n
-openai:gpt-4o | 4 | 0.67 | 0.44 to 0.90 | 0.04 to 1.00 | 2.00 | 4.00 | 2.00 | 9,100 | 24
-openai:gpt-4o | 50 | 0.71 | 0.45 to 0.97 | 0.08 to 1.00 | 2.00 | 4.00 | 2.00 | 9,100 | 24
-GPT-4o (paper) | 4 | 0.82 | – | – | 1.27 | 6.34 | 3.94 | – | –
-GPT-4o (paper) | 6 | 0.84 | – | – | 1.20 | 9.20 | 3.85 | – | –
-GPT-4o (paper) | 10 | 0.86 | – | – | 1.47 | 6.99 | 4.05 | – | –
-GPT-4o (paper) | 50 | 0.93 | – | – | 1.08 | 4.67 | 4.71 | – | –
+model | k | completion | would it repeat? | other tasks? | Look + first | model calls | s/call | tokens | cut prompts | n
+openai:gpt-4o | 4 | 0.67 | 0.44 to 0.90 | 0.04 to 1.00 | 2.00 | 4.00 | 2.00 | 9,100 | 0.00 | 24
+openai:gpt-4o | 50 | 0.71 | 0.45 to 0.97 | 0.08 to 1.00 | 2.00 | 4.00 | 2.00 | 9,100 | 0.00 | 24
+GPT-4o (paper) | 4 | 0.82 | – | – | 1.27 | 6.34 | 3.94 | – | – | –
+GPT-4o (paper) | 6 | 0.84 | – | – | 1.20 | 9.20 | 3.85 | – | – | –
+GPT-4o (paper) | 10 | 0.86 | – | – | 1.47 | 6.99 | 4.05 | – | – | –
+GPT-4o (paper) | 50 | 0.93 | – | – | 1.08 | 4.67 | 4.71 | – | – | –
 """,
     "calls": """
 labeling | model | Walk | Look | Pick | Drop | all tools | model calls | requests
@@ -488,22 +488,22 @@ SEM | GPT-4o (paper) | 6.60 | 54.38 | – | –
 SEM | Claude 3.5 Sonnet (paper) | 7.74 | 41.36 | – | –
 """,
     "conduct": """
-labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | walked, m | path / oracle’s
-all labelings | openai:gpt-4o, k=4 | 0.67 | 0.67 | 33.3 % | 33.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-all labelings | openai:gpt-4o, k=50 | 0.71 | 0.71 | 29.2 % | 29.2 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-all labelings | openai:gpt-4o | 0.42 | 0.42 | 58.3 % | 58.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-all labelings | GPT-4o (paper) | 0.69 | – | – | – | – | – | – | – | – | –
-all labelings | Claude 3.5 Sonnet (paper) | 0.67 | – | – | – | – | – | – | – | – | –
-OPAQ | openai:gpt-4o, k=4 | 0.42 | 0.42 | 58.3 % | 58.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-OPAQ | openai:gpt-4o, k=50 | 0.75 | 0.75 | 25.0 % | 25.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-OPAQ | openai:gpt-4o | 0.17 | 0.17 | 83.3 % | 83.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-OPAQ | GPT-4o (paper) | 0.63 | – | – | – | – | – | – | – | – | –
-OPAQ | Claude 3.5 Sonnet (paper) | 0.55 | – | – | – | – | – | – | – | – | –
-SEM | openai:gpt-4o, k=4 | 0.92 | 0.92 | 8.3 % | 8.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-SEM | openai:gpt-4o, k=50 | 0.67 | 0.67 | 33.3 % | 33.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-SEM | openai:gpt-4o | 0.67 | 0.67 | 33.3 % | 33.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
-SEM | GPT-4o (paper) | 0.75 | – | – | – | – | – | – | – | – | –
-SEM | Claude 3.5 Sonnet (paper) | 0.79 | – | – | – | – | – | – | – | – | –
+labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | cut prompts | walked, m | path / oracle’s
+all labelings | openai:gpt-4o, k=4 | 0.67 | 0.67 | 33.3 % | 33.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+all labelings | openai:gpt-4o, k=50 | 0.71 | 0.71 | 29.2 % | 29.2 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+all labelings | openai:gpt-4o | 0.42 | 0.42 | 58.3 % | 58.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+all labelings | GPT-4o (paper) | 0.69 | – | – | – | – | – | – | – | – | – | –
+all labelings | Claude 3.5 Sonnet (paper) | 0.67 | – | – | – | – | – | – | – | – | – | –
+OPAQ | openai:gpt-4o, k=4 | 0.42 | 0.42 | 58.3 % | 58.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+OPAQ | openai:gpt-4o, k=50 | 0.75 | 0.75 | 25.0 % | 25.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+OPAQ | openai:gpt-4o | 0.17 | 0.17 | 83.3 % | 83.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+OPAQ | GPT-4o (paper) | 0.63 | – | – | – | – | – | – | – | – | – | –
+OPAQ | Claude 3.5 Sonnet (paper) | 0.55 | – | – | – | – | – | – | – | – | – | –
+SEM | openai:gpt-4o, k=4 | 0.92 | 0.92 | 8.3 % | 8.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+SEM | openai:gpt-4o, k=50 | 0.67 | 0.67 | 33.3 % | 33.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+SEM | openai:gpt-4o | 0.67 | 0.67 | 33.3 % | 33.3 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00
+SEM | GPT-4o (paper) | 0.75 | – | – | – | – | – | – | – | – | – | –
+SEM | Claude 3.5 Sonnet (paper) | 0.79 | – | – | – | – | – | – | – | – | – | –
 """,
 }
 """The same model in two studies, the second with two values of k."""

@@ -157,13 +157,13 @@ Seconds an episode: of the model, of the world that carries the calls out, and o
 
 ### Stops, claims, refusals and ways
 
-Early stops: share of episodes that the agent ended with conditions open. False claims: those in which it said that all was done. Refused calls changed nothing, corrected ones were carried out otherwise than asked; protocol failures are replies that were neither a call nor an answer; each per episode. Path / oracle’s is metres walked over those of the oracle, in complete episodes for which these are known: those in a scene as it is.
+Early stops: share of episodes that the agent ended with conditions open. False claims: those in which it said that all was done. Refused calls changed nothing, corrected ones were carried out otherwise than asked; protocol failures are replies that were neither a call nor an answer; cut prompts no longer held every reply before; each per episode. Path / oracle’s is metres walked over those of the oracle, in complete episodes for which these are known: those in a scene as it is.
 
-| labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | walked, m | path / oracle’s |
-| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
-| all labelings | openai:gpt-4o | 0.88 | 0.75 | 25.0 % | 25.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00 |
-| all labelings | GPT-4o (paper) | 1.00 | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) |
-| all labelings | Claude 3.5 Sonnet (paper) | 1.00 | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) |
+| labeling | model | completion | strict | early stops | false claims | refused calls | corrected calls | protocol failures | missing notes | cut prompts | walked, m | path / oracle’s |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
+| all labelings | openai:gpt-4o | 0.88 | 0.75 | 25.0 % | 25.0 % | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 2.00 | 2.00 |
+| all labelings | GPT-4o (paper) | 1.00 | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) |
+| all labelings | Claude 3.5 Sonnet (paper) | 1.00 | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) | – (a) |
 
 (a) the paper does not tell.
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from tests.outcomes import made, repeated
 from tests.report.study.material import TASKS, baseline, episodes, material, source
 
+from adamo_vh.analysis.cells import Setting
 from adamo_vh.errors import RecordError
-from adamo_vh.report.study.material import Material
+from adamo_vh.inference.model import ModelKind
+from adamo_vh.report.study.material import Material, names
 
 
 @pytest.fixture(scope="module")
@@ -101,3 +105,17 @@ def test_a_chip_says_what_came_of_its_episode(of: Material) -> None:
 def test_a_chip_is_coloured_by_its_score(of: Material, score: float | None, kind: str) -> None:
     (chip,), _ = of.chips([made("T15", score)])
     assert chip.kind == kind
+
+
+@pytest.mark.parametrize(
+    ("axes", "name"),
+    [
+        ({"switches.plan": "1"}, "m, plan=1"),
+        ({"switches.plan": "1", "k": "4"}, "m, k=4, plan=1"),
+        ({"a.plan": "1", "b.plan": "2"}, "m, a.plan=1, b.plan=2"),
+    ],
+)
+def test_a_setting_is_named_without_the_group_it_stands_in(axes: dict[str, str], name: str) -> None:
+    one = Setting("m", ModelKind.RANDOM, "paper", tuple(sorted(axes.items())))
+    other = replace(one, axes=tuple((axis, "9") for axis in sorted(axes)))
+    assert names([one, other])[one] == name

@@ -27,6 +27,7 @@ _MEASURES: tuple[Measure, ...] = (
     ("model calls", "number", lambda f: f.model_calls, lambda p: p.model_calls),
     ("s/call", "seconds", lambda f: f.seconds_per_call, lambda p: p.seconds_per_call),
     ("tokens", "tokens", lambda f: f.tokens, lambda p: p.tokens),
+    ("cut prompts", "number", lambda f: f.cut_prompts, lambda p: None),
 )
 
 
@@ -122,7 +123,7 @@ def _table(material: Material, axis: str) -> Table:
         f"Varied: {axis}",
         f"{axis} is {_WHAT.get(axis, 'a setting of the episode')}. Means over all episodes with "
         "each value, with both intervals of completion; the first view is counted in “Look + "
-        "first”, as in the paper.",
+        "first”, as in the paper. Cut prompts no longer held every reply before.",
         (
             "model",
             axis,

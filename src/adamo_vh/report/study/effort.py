@@ -114,6 +114,7 @@ _CONDUCT: tuple[Column, ...] = (
     ("corrected calls", "number", lambda f: f.corrected, None),
     ("protocol failures", "number", lambda f: f.protocol_failures, None),
     ("missing notes", "number", lambda f: f.missing_notes, None),
+    ("cut prompts", "number", lambda f: f.cut_prompts, None),
     ("walked, m", "metres", lambda f: f.walked_m, None),
     ("path / oracle’s", "number", lambda f: f.path_ratio, None),
 )
@@ -134,7 +135,8 @@ def conduct(material: Material) -> Section:
                 "Early stops: share of episodes that the agent ended with conditions open. False "
                 "claims: those in which it said that all was done. Refused calls changed nothing, "
                 "corrected ones were carried out otherwise than asked; protocol failures are "
-                "replies that were neither a call nor an answer; each per episode. Path / oracle’s "
+                "replies that were neither a call nor an answer; cut prompts no longer held every "
+                "reply before; each per episode. Path / oracle’s "
                 "is metres walked over those of the oracle, in complete episodes for which these "
                 "are known: those in a scene as it is.",
                 _CONDUCT,

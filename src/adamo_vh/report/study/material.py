@@ -186,13 +186,15 @@ def names(settings: Sequence[Setting]) -> dict[Setting, str]:
     """Settings in as few words as tell them apart."""
     axes = _distinct(name for setting in settings for name, _ in setting.axes)
     varied = [axis for axis in axes if len({dict(s.axes).get(axis) for s in settings}) > 1]
+    last = {axis: axis.rpartition(".")[2] for axis in varied}
+    words = last if len({*last.values()}) == len(last) else {axis: axis for axis in varied}
     several_profiles = len({setting.profile for setting in settings}) > 1
     called, with_study = {}, {}
     for setting in settings:
         values = dict(setting.axes)
         parts = [setting.model]
         parts += [setting.profile] if several_profiles else []
-        parts += [f"{a}={values[a]}" for a in varied if a != STUDY_AXIS and a in values]
+        parts += [f"{words[a]}={values[a]}" for a in varied if a != STUDY_AXIS and a in values]
         called[setting] = ", ".join(parts)
         with_study[setting] = ", ".join([values.get(STUDY_AXIS, ""), *parts])
     return called if len(set(called.values())) == len(called) else with_study
