@@ -10,7 +10,7 @@ import pytest
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.runtime import physics
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.runtime.shadows import ShadowMap
+from adamo_vh.runtime.shadows import SHADOW_MAP_PX, ShadowMap, _area
 
 SMALL = (320, 180)
 CUP = 45
@@ -45,7 +45,7 @@ def counted(engine: BuiltinEngine, monkeypatch: pytest.MonkeyPatch) -> Counted:
     return Counted(engine, monkeypatch)
 
 
-def test_furniture_is_drawn_once_whatever_the_body_and_the_objects_do(
+def test_what_stands_still_is_drawn_once_and_again_when_a_thing_first_moves(
     engine: BuiltinEngine, counted: Counted
 ) -> None:
     assert counted.after_drawing() == 1
@@ -53,8 +53,9 @@ def test_furniture_is_drawn_once_whatever_the_body_and_the_objects_do(
     engine.body.look(Vec3(0.0, 0.0, 0.7))
     assert counted.after_drawing() == 1
     cup = engine.world.box(CUP).center
-    physics.place(engine.world, CUP, cup + Vec3(0.05, 0.0, 0.1))
-    assert counted.after_drawing() == 1
+    for rise in (0.1, 0.2, 0.3):
+        physics.place(engine.world, CUP, cup + Vec3(0.05, 0.0, rise))
+        assert counted.after_drawing() == 2
 
 
 def test_it_is_drawn_again_when_the_light_or_the_furniture_moved(
@@ -117,3 +118,37 @@ def test_a_plain_wall_has_no_edge_where_the_light_looks_no_further() -> None:
     # The right wall, from above the plane in which the lamp hangs to below it.
     rows = rgb[150:260, 780:850].mean(axis=(1, 2))
     assert np.abs(rows[3:] - rows[:-3]).max() < 3.0
+
+
+def test_the_part_of_the_map_that_moves_holds_every_ball() -> None:
+    project = np.diag([1.6, 1.6, 0.0, 0.0])
+    side = SHADOW_MAP_PX
+    balls = np.array([[0.3, -0.2, -2.0, 0.3], [-0.5, 0.4, -3.0, 0.1]])
+    x, y, wide, tall = _area(balls, project, np.eye(4)) or (0, 0, 0, 0)
+    assert 0 < wide < side and 0 < tall < side
+    rng = np.random.default_rng(0)
+    for *middle, radius in balls:
+        points = rng.normal(size=(400, 3))
+        points = middle + radius * points / np.linalg.norm(points, axis=1, keepdims=True)
+        pixels = (1.6 * points[:, :2] / -points[:, 2:] + 1) / 2 * side
+        assert (pixels >= [x, y]).all() and (pixels <= [x + wide, y + tall]).all()
+    assert _area(np.empty((0, 4)), project, np.eye(4)) is None
+    near = np.array([[0.0, 0.0, -0.3, 0.2]])
+    assert _area(near, project, np.eye(4)) == (0, 0, side, side)
+
+
+def test_a_thing_that_moves_on_leaves_no_shadow_behind(
+    engine: BuiltinEngine, from_above: Camera
+) -> None:
+    cup = engine.world.box(CUP).center
+
+    def seen(*places: Vec3):
+        for place in places:
+            physics.place(engine.world, CUP, place)
+            engine.stage.picture(engine.body.stance, from_above)
+        return engine.stage.picture(engine.body.stance, from_above).copy()
+
+    away, high = cup + Vec3(0.4, 0.3, 0.5), cup + Vec3(0.0, 0.0, 0.25)
+    once = seen(away)
+    assert (seen(cup, high, cup + Vec3(0.1, 0.05, 0.2), away) == once).all()
+    physics.place(engine.world, CUP, cup)

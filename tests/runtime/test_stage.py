@@ -145,11 +145,12 @@ def test_a_film_can_be_played(engine: BuiltinEngine, tmp_path: Path) -> None:
         assert picture.shape == (HEIGHT, WIDTH, 3)
         assert picture.std() > 10
     assert pictures >= 4
+    assert (tmp_path / "film.vtt").read_text(encoding="utf-8").startswith("WEBVTT")
 
 
 def test_a_film_needs_a_known_ending(engine: BuiltinEngine, tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"\.webm or \.avi"):
-        VideoRecorder(tmp_path / "film.mp4", FilmSet(engine))
+    with pytest.raises(ConfigError, match=r"\.webm, \.avi or \.mp4"):
+        VideoRecorder(tmp_path / "film.mov", FilmSet(engine))
 
 
 BOTTLE, PLANT = 36, 50

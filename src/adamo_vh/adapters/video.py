@@ -1,14 +1,11 @@
 """A film of an episode: a camera that follows the figure, what its eyes see, what it thinks.
 
-WebM with VP8, written by the FFmpeg (LGPL) inside OpenCV, so that no GPL library is needed. Asking
-for the moments between two states changes nothing about the episode.
+Asking for the moments between two states changes nothing about the episode.
 """
 
 from __future__ import annotations
 
 import json
-import math
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,10 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from adamo_vh.errors import ConfigError
-from adamo_vh.files import make_folder, naming
-from adamo_vh.geometry import Camera, Vec3
-from adamo_vh.observation import BodyState, Frame
+from adamo_vh.adapters.encoding import Film
+from adamo_vh.adapters.tripod import Tripod
+from adamo_vh.observation import Frame
 from adamo_vh.record.trajectory import Acted, Ended, Event, Observed, Started, Thought
 from adamo_vh.record.turn import Wish
 from adamo_vh.session.filming import FilmSet
@@ -29,11 +25,6 @@ _ROOM_PX = (832, 720)
 _EYES_PX = (448, 252)
 _PAUSE_S = 1.2
 """How long a thought stands before the body moves."""
-_CODECS = {".webm": "VP80", ".avi": "MJPG"}
-_DISTANCE_M, _CAMERA_Z_M, _WALL_M = 2.7, 1.75, 0.35
-_FOV_RAD = math.radians(62.0)
-_FOLLOW = 0.1
-"""Share of the way to its ideal place that the camera goes in each frame."""
 _INK, _PAPER, _CALL = (236, 232, 224), (24, 24, 27), (150, 190, 250)
 _COLOURS = {"done": (142, 206, 142), "corrected": (232, 200, 110), "refused": (236, 128, 118)}
 
@@ -48,30 +39,19 @@ class VideoRecorder:
         """Begin to film.
 
         Args:
-            path: Of the film: .webm (VP8) or .avi (Motion JPEG).
+            path: Of the film: .webm (VP8), .mp4 (H.264) or .avi (Motion JPEG).
             film_set: The engine whose episode is filmed.
 
         Raises:
-            ConfigError: The name has another ending, or the file cannot be written.
+            ConfigError: The name has another ending, or the film cannot be written.
         """
-        os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
-        import cv2
-
-        if path.suffix not in _CODECS:
-            raise ConfigError(f"{path}: films end in {' or '.join(_CODECS)}.")
-        # OpenCV says no more than that it cannot; and that not in one line.
-        with naming("written", make_folder(path.parent) / path.name):
-            path.touch()
-        code = cv2.VideoWriter.fourcc(*_CODECS[path.suffix])
-        self._writer = cv2.VideoWriter(str(path), code, FilmSet.moments_per_s, (WIDTH, HEIGHT))
-        if not self._writer.isOpened():
-            raise ConfigError(f"{path}: cannot be written as a film.")
+        self._film = Film(path, (WIDTH, HEIGHT), FilmSet.moments_per_s)
         self._canvas = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
         """The picture, in the order blue, green, red."""
         self._count = 0
         self._standing_s = 0.0
         self._set = film_set
-        self._camera_at: Vec3 | None = None
+        self._tripod = Tripod(film_set, _ROOM_PX)
         self._text: list[_Line] = []
         self._wishes: Sequence[Wish] = ()
         """The calls of the turn, from the one that is being carried out."""
@@ -112,7 +92,7 @@ class VideoRecorder:
     def close(self) -> None:
         """Finish the film."""
         self._set.watch(None)
-        self._writer.release()
+        self._film.close()
 
     def _next(self) -> list[_Line]:
         """The call that comes next; Finish is none, its answer is shown at the end."""
@@ -127,13 +107,11 @@ class VideoRecorder:
         for _ in range(0, round(seconds * FilmSet.moments_per_s), 3):
             self._standing_s += 3 / FilmSet.moments_per_s
             with self._set.idling(self._standing_s):
-                self._moment()
-            self._writer.write(self._canvas)
-            self._writer.write(self._canvas)
+                self._moment(times=3)
 
-    def _moment(self) -> None:
+    def _moment(self, times: int = 1) -> None:
         """Add one picture. The eyes' is small and drawn every other time."""
-        room = self._set.picture(self._follow(self._set.body()))
+        room = self._set.picture(self._tripod.camera())
         self._canvas[:, : _ROOM_PX[0]] = room[:, :, ::-1]
         if self._count % 2 == 0:
             eyes = self._set.eyes(*_EYES_PX)
@@ -141,20 +119,8 @@ class VideoRecorder:
         self._count += 1
         text = self._subtitles(WIDTH - _ROOM_PX[0], HEIGHT - _EYES_PX[1])
         self._canvas[_EYES_PX[1] :, _ROOM_PX[0] :] = text[:, :, ::-1]
-        self._writer.write(self._canvas)
-
-    def _follow(self, body: BodyState) -> Camera:
-        """A camera in front and to the side, inside the room, that moves softly."""
-        scene, at = self._set.scene, body.position
-        angle = body.heading_rad + math.radians(50.0)
-        x = at.x + _DISTANCE_M * math.cos(angle)
-        y = at.y + _DISTANCE_M * math.sin(angle)
-        x = min(max(x, scene.x_min + _WALL_M), scene.x_max - _WALL_M)
-        y = min(max(y, scene.y_min + _WALL_M), scene.y_max - _WALL_M)
-        wish = Vec3(x, y, _CAMERA_Z_M)
-        last = self._camera_at or wish
-        self._camera_at = here = last + (wish - last) * _FOLLOW
-        return Camera.towards(here, Vec3(at.x, at.y, 1.0), _FOV_RAD, _ROOM_PX)
+        self._film.caption(_spoken(self._text))
+        self._film.write(self._canvas, times)
 
     def _subtitles(self, width: int, height: int) -> NDArray[np.uint8]:
         from PIL import Image, ImageDraw, ImageFont
@@ -175,6 +141,11 @@ class VideoRecorder:
             y += 12
         self._drawn = (key, np.asarray(picture))
         return self._drawn[1]
+
+
+def _spoken(lines: Sequence[_Line]) -> str:
+    """What is to be read at a moment, as a subtitle for players: all but the instruction."""
+    return "\n".join(f"{label}: {words}" for label, words, _ in lines[1:] or lines)
 
 
 def _caption(name: str, arguments: Mapping[str, Any] | None, raw: str) -> _Line:

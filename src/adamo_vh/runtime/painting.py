@@ -59,6 +59,11 @@ class Painter:
             for shadow in (False, True)
         }
         _set_up(self._map.texture)
+        self._places = np.empty(0)
+        self._roams = self.parts.moves.copy()
+        """Which parts have been elsewhere already; skins always count as such."""
+        self._roams[: len(self.parts.geoms)] = False
+        self._shadow_of = np.eye(4)
 
     def check(self) -> None:
         """Make sure that nobody has freed what this draws with.
@@ -89,6 +94,7 @@ class Painter:
         *,
         groups: NDArray[np.bool_],
         shadow: bool,
+        again: bool = False,
     ) -> Painting:
         """Draw what the scene's camera sees.
 
@@ -98,6 +104,7 @@ class Painter:
             size: Width and height of the picture, pixels.
             groups: Which groups of skins to draw.
             shadow: Draw shadows.
+            again: Take the shadows of the picture before, which was of the same moment.
         """
         parts, brush = self.parts, self._brush
         brush.start(data, scene)
@@ -105,7 +112,9 @@ class Painter:
         shown[len(parts.geoms) :] = groups[parts.skin_group]
         casters = [i for i in range(scene.nlight) if scene.lights[i].castshadow]
         caster = casters[0] if shadow and casters else -1
-        to_shadow = np.eye(4) if caster < 0 else self._shadows(scene, caster, shown)
+        if caster >= 0 and not again:
+            self._shadow_of = self._shadows(scene, caster, shown)
+        to_shadow = np.eye(4) if caster < 0 else self._shadow_of
         self._canvas.begin(*size)
         eye, half_angles = _aim(scene, size)
         _set_lights(scene)
@@ -127,15 +136,27 @@ class Painter:
         """Draw the shadow map of a light; what to look up in it, from the world."""
         parts, brush = self.parts, self._brush
         light, eye = scene.lights[caster], scene.camera[0]
-        still, moving = parts.casts & ~parts.moves, parts.casts & parts.moves & shown
+        self._watch_parts()
+        still, moving = parts.casts & ~self._roams, parts.casts & self._roams & shown
         angle = 2 * light.cutoff * self.context.shadowScale
         return self._map.draw(
             light,
             (angle, eye.frustum_near, eye.frustum_far),
             brush.at[still].tobytes() + brush.turns[still[: len(parts.geoms)]].tobytes(),
             partial(brush.draw_shapes, still),
-            partial(brush.draw_shapes, moving),
+            (
+                partial(brush.draw_shapes, moving),
+                np.column_stack([brush.at[moving], brush.radius[moving]]),
+            ),
         )
+
+    def _watch_parts(self) -> None:
+        """Note what is elsewhere than before: from now on it is drawn anew each time."""
+        geoms, brush = len(self.parts.geoms), self._brush
+        places = np.column_stack([brush.at[:geoms], brush.turns.reshape(geoms, -1)])
+        if len(self._places):
+            self._roams[:geoms] |= (places != self._places).any(axis=1)
+        self._places = places
 
     def _draw_clear(self, which: NDArray[np.intp], eye: Array) -> None:
         """Draw what is see-through, the near before the far and back again, as MuJoCo does."""

@@ -96,10 +96,24 @@ class SceneRenderer:
         return Drawing(_finished(painting), self._layers(painting))
 
     def color(
-        self, data: mujoco.MjData, camera: Camera, *, head: bool = False, shadow: bool = True
+        self,
+        data: mujoco.MjData,
+        camera: Camera,
+        *,
+        head: bool = False,
+        shadow: bool = True,
+        again: bool = False,
     ) -> NDArray[np.uint8]:
-        """Only the picture, (H, W, 3); see `draw`."""
-        return _finished(self._painted(data, camera, head=head, shadow=shadow))
+        """Only the picture, (H, W, 3); see `draw`.
+
+        Args:
+            data: The state of the world.
+            camera: From where.
+            head: Draw the figure's head too.
+            shadow: Draw shadows.
+            again: The picture before was of the same moment: take its shadows.
+        """
+        return _finished(self._painted(data, camera, head=head, shadow=shadow, again=again))
 
     def layers(
         self, data: mujoco.MjData, camera: Camera, *, head: bool = False
@@ -108,13 +122,21 @@ class SceneRenderer:
         return self._layers(self._painted(data, camera, head=head, shadow=False))
 
     def _painted(
-        self, data: mujoco.MjData, camera: Camera, *, head: bool, shadow: bool
+        self,
+        data: mujoco.MjData,
+        camera: Camera,
+        *,
+        head: bool,
+        shadow: bool,
+        again: bool = False,
     ) -> Painting:
         if not self._free.alive:
             raise RenderingError("The renderer was closed; make a new engine.")
-        return in_graphics_thread(partial(self._paint, data, camera, head, shadow))
+        return in_graphics_thread(partial(self._paint, data, camera, head, shadow, again))
 
-    def _paint(self, data: mujoco.MjData, camera: Camera, head: bool, shadow: bool) -> Painting:
+    def _paint(
+        self, data: mujoco.MjData, camera: Camera, head: bool, shadow: bool, again: bool
+    ) -> Painting:
         import mujoco
 
         self._option.skingroup[HEAD_GROUP] = head
@@ -130,7 +152,8 @@ class SceneRenderer:
         self._painter.check()
         groups = self._option.skingroup.astype(bool)
         size = camera.width_px, camera.height_px
-        return self._painter.paint(data, self._scene, size, groups=groups, shadow=shadow)
+        given = data, self._scene, size
+        return self._painter.paint(*given, groups=groups, shadow=shadow, again=again)
 
     def _layers(self, painting: Painting) -> tuple[IdLayer, ...]:
         parts = self._painter.parts

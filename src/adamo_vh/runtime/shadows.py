@@ -41,6 +41,8 @@ class ShadowMap:
             )
             call("DrawBuffer", "u")(gl.NONE)
         self._known = b""
+        self._drawn_on: tuple[int, int, int, int] | None = None
+        """What of the map is not as that of what stands still: x, y, width and height."""
 
     def draw(
         self,
@@ -48,7 +50,7 @@ class ShadowMap:
         view: tuple[float, float, float],
         known: bytes,
         still: Callable[[], None],
-        moving: Callable[[], None],
+        moving: tuple[Callable[[], None], Array],
     ) -> Array:
         """Draw the map anew.
 
@@ -57,7 +59,7 @@ class ShadowMap:
             view: Opening angle of the map in degrees, and the nearest and farthest distance.
             known: What the map of that which stands still depends on.
             still: Draws what stands still.
-            moving: Draws what can move.
+            moving: Draws what can move; and (N, 4) balls around it: middle and radius.
 
         Returns:
             (4, 4) shadow_from_world: what to look up in the map.
@@ -79,16 +81,45 @@ class ShadowMap:
             call("Clear", "u")(gl.DEPTH_BUFFER_BIT)
             still()
             self._known = known
-        side = SHADOW_MAP_PX
-        whole = (gl.TEXTURE_2D, 0, 0, 0, 0)
-        call("CopyImageSubData", "uuiiiiuuiiiiiii")(
-            self._still, *whole, self.texture, *whole, side, side, 1
-        )
+            self._drawn_on = (0, 0, SHADOW_MAP_PX, SHADOW_MAP_PX)
+        draw, balls = moving
+        if self._drawn_on is not None:
+            x, y, wide, high = self._drawn_on
+            there = (gl.TEXTURE_2D, 0, x, y, 0)
+            call("CopyImageSubData", "uuiiiiuuiiiiiii")(
+                self._still, *there, self.texture, *there, wide, high, 1
+            )
         call("BindFramebuffer", "uu")(gl.FRAMEBUFFER, self._frames[1])
-        moving()
+        draw()
+        self._drawn_on = _area(balls, project, see)
         call("Enable", "u")(gl.CULL_FACE)
         call("Disable", "u")(gl.POLYGON_OFFSET_FILL)
         return _FROM_CLIP @ project @ see
+
+
+def _area(balls: Array, project: Array, see: Array) -> tuple[int, int, int, int] | None:
+    """The part of the map that balls may be in; None without any.
+
+    Returns:
+        Its lowest x and y, its width and its height, pixels.
+    """
+    if not len(balls):
+        return None
+    places = balls[:, :3] @ see[:3, :3].T + see[:3, 3]
+    radius, away = balls[:, 3], -places[:, 2]
+    side = SHADOW_MAP_PX
+    if (away <= 2 * radius).any():
+        return 0, 0, side, side
+    flat = places[:, :2] * [project[0, 0], project[1, 1]]
+    # The widest that a ball may be seen at: as if its middle were at its nearest.
+    reach = radius[:, None] * [project[0, 0], project[1, 1]]
+    near = (away - radius)[:, None]
+    low = np.minimum((flat - reach) / near, (flat - reach) / away[:, None]).min(axis=0)
+    high = np.maximum((flat + reach) / near, (flat + reach) / away[:, None]).max(axis=0)
+    first = np.clip(np.floor((low + 1) / 2 * side) - 2, 0, side).astype(int)
+    last = np.clip(np.ceil((high + 1) / 2 * side) + 2, 0, side).astype(int)
+    wide, tall = (int(size) for size in np.maximum(last - first, 0))
+    return (int(first[0]), int(first[1]), wide, tall) if wide and tall else None
 
 
 _FROM_CLIP = np.array(

@@ -129,10 +129,20 @@ class Stage:
         layers = tuple(layer.ids for layer in drawn.layers)
         return Percept(drawn.rgb, layers, seen, body, camera)
 
-    def picture(self, body: Stance, camera: Camera, *, head: bool = True) -> NDArray[np.uint8]:
-        """Only the colour picture of this moment, (H, W, 3); without the head to look out of it."""
-        self._pose(self.shown(body))
-        return self.renderer.color(self._world.data, camera, head=head)
+    def picture(
+        self, body: Stance, camera: Camera, *, head: bool = True, again: bool = False
+    ) -> NDArray[np.uint8]:
+        """Only the colour picture of this moment, (H, W, 3).
+
+        Args:
+            body: The state of the body.
+            camera: From where.
+            head: Without it one can look out of it.
+            again: The picture before was of the same moment, which saves drawing shadows.
+        """
+        if not again:
+            self._pose(self.shown(body))
+        return self.renderer.color(self._world.data, camera, head=head, again=again)
 
     def shown(self, body: Stance) -> BodyFrame:
         """What is to be seen now: a moment of an action, or the figure between actions."""

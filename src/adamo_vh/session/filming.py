@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.engine import SceneInfo
-from adamo_vh.geometry import Camera
+from adamo_vh.geometry import Array, Camera, Vec3
 from adamo_vh.observation import BodyState
 from adamo_vh.runtime.stage import MOMENTS_PER_S
 
@@ -59,15 +59,24 @@ class FilmSet:
         """How the figure stands at this moment."""
         return self.engine.stage.shown(self.engine.body.stance).body.state()
 
+    def figure(self) -> tuple[BodyState, Vec3, Vec3]:
+        """The body, where the figure's eyes are, and where her right hand is, at this moment."""
+        shown = self.engine.stage.shown(self.engine.body.stance)
+        return shown.body.state(), shown.eyes, shown.hand
+
+    def rays(self, origin: Vec3, directions: Array) -> Sequence[Vec3 | None]:
+        """Where rays first meet something that can be seen, but the figure and what she holds."""
+        return self.engine.body.rays(origin, directions)
+
     def picture(self, camera: Camera) -> NDArray[np.uint8]:
         """(H, W, 3) this moment, from any camera."""
         return self.engine.stage.picture(self.engine.body.stance, camera)
 
     def eyes(self, width_px: int, height_px: int) -> NDArray[np.uint8]:
-        """(H, W, 3) this moment, through the figure's eyes."""
+        """(H, W, 3) the moment of the last picture, through the figure's eyes."""
         stance = self.engine.body.stance
         camera = self.engine.stage.shown(stance).body.camera(width_px, height_px)
-        return self.engine.stage.picture(stance, camera, head=False)
+        return self.engine.stage.picture(stance, camera, head=False, again=True)
 
     def idling(self, seconds: float) -> AbstractContextManager[None]:
         """Show the figure some seconds into standing still: it breathes and blinks."""
