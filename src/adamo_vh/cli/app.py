@@ -151,7 +151,7 @@ def run(
         ),
     ] = None,
     video: Annotated[
-        Path | None, typer.Option(help="Film the episode: FILE.webm (VP8) or FILE.avi.")
+        Path | None, typer.Option(help="Film the episode: FILE.webm, .mp4 (by ffmpeg) or .avi.")
     ] = None,
     sign: Annotated[
         Path | None,
