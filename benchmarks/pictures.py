@@ -31,7 +31,8 @@ _ARGUMENTS = ("--headless=new", "--no-first-run", "--no-sandbox", "--remote-debu
 _BY_PROCESSOR = ("--enable-unsafe-swiftshader", "--disable-gpu")
 _WAIT_S = 120.0
 _MB = 1e6
-_FILL = "Object.assign(studio.seeing.root.style, {position: 'fixed', inset: '0', zIndex: '9'})"
+_FILL = """Object.assign(studio.seeing.root.style,
+  {position: 'fixed', inset: '0', zIndex: '9', height: 'auto', maxHeight: 'none'})"""
 """Let the picture fill the window, so that the size is that of the picture."""
 _WATCH = Path(__file__).with_name("pictures.js")
 
