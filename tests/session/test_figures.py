@@ -29,6 +29,8 @@ from adamo_vh.session.runs import replay_episode, run_episode
 from adamo_vh.session.session import Session
 from adamo_vh.session.spare import engine_for
 from adamo_vh.session.verifying import verify_run
+from adamo_vh.study.plan import Study, plan
+from adamo_vh.study.running import check_parts
 
 SMALL = (160, 90)
 SHORT = Rig("mixamo", t_pose(), garments=("shoes", "hands"), plain=True)
@@ -156,3 +158,26 @@ def test_a_conversation_keeps_the_figure_too(me, tmp_path):
     with Session.begin(config, tmp_path / "talk", model=said, page=False) as session:
         session.say("Say done.")
     assert (tmp_path / "talk" / FIGURE).is_file()
+
+
+def test_a_file_that_changes_under_an_engine_is_told(tmp_path):
+    file = tmp_path / "me.glb"
+    file.write_bytes(rig(SHORT))
+    engine = create_engine("s1", str(file))
+    try:
+        file.write_bytes(rig(Rig("unity", garments=("shoes",), plain=True)))
+        said = ScriptedModel("scripted", [AIMessage("done", ())])
+        with pytest.raises(RecordError, match="not the figure any more"):
+            run_episode(
+                "Say done.", model=said, engine=engine, resolution=SMALL, out=tmp_path / "run"
+            )
+    finally:
+        engine.close()
+
+
+def test_a_study_looks_at_its_figures_before_it_starts(tmp_path):
+    wrong = tmp_path / "x.glb"
+    wrong.write_bytes(b"no figure")
+    episodes = plan(Study(("T2",), axes={"figure": ("mara", str(wrong))}))
+    with pytest.raises(FileError, match="no GLB"):
+        check_parts(episodes)

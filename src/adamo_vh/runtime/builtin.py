@@ -18,7 +18,7 @@ from adamo_vh.runtime.builtin_body import BuiltinBody
 from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.graphics import check_process, load_mujoco
 from adamo_vh.runtime.happenings import Happenings
-from adamo_vh.runtime.human.looks import VARIANTS, identity, load_figure
+from adamo_vh.runtime.human.looks import VARIANTS, load_figure
 from adamo_vh.runtime.inspection.settled import settled_world
 from adamo_vh.runtime.scenes.scene import Scene, load_scene, scene_names
 from adamo_vh.runtime.snapshot import Snapshot
@@ -59,8 +59,9 @@ class BuiltinEngine:
         check_process()
         load_mujoco()
         given = origin or (scene if isinstance(scene, str) else "")
-        self._info = _described(self._scene, given, figure)
-        self._world: CompiledWorld = settled_world(self._scene, load_figure(figure))
+        looks = load_figure(figure)
+        self._info = _described(self._scene, given, looks.sha256 or figure)
+        self._world: CompiledWorld = settled_world(self._scene, looks)
         self.turns = Turns()
         self.stage = Stage(self._world)
         """Draws the world, and lets actions be watched."""
@@ -198,8 +199,8 @@ class BuiltinEngine:
         self.stage.close()
 
 
-def _described(scene: Scene, given: str, figure: str) -> SceneInfo:
+def _described(scene: Scene, given: str, looks: str) -> SceneInfo:
     """What the engine says of its scene, with its origin and its digest."""
     source = "built-in" if given.lower() in scene_names() else given or "given"
-    digest = hashlib.sha256(repr((scene, identity(figure))).encode()).hexdigest()
+    digest = hashlib.sha256(repr((scene, looks)).encode()).hexdigest()
     return replace(scene.info(), source=source, digest=digest)

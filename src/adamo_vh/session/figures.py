@@ -122,24 +122,22 @@ def figure_digest(who: str) -> str:
     return sha256(content_of(Path(who))).hexdigest()
 
 
-def digest_in(world: World, who: str) -> str:
-    """As `figure_digest`, of the figure that an engine has; empty in an engine of others.
+def digest_in(world: World) -> str:
+    """As `figure_digest`, of the figure that an engine was made with; empty in one of others.
 
     What another engine calls its figure is no path of ours.
     """
-    if not is_own(who):
-        return ""
     from adamo_vh.runtime.builtin import BuiltinEngine
 
     made = world.lender.world if isinstance(world, LentWorld) else world
-    return figure_digest(who) if isinstance(made, BuiltinEngine) else ""
+    return made.world.figure.sha256 if isinstance(made, BuiltinEngine) else ""
 
 
 def keep_figure(folder: Path, manifest: Manifest) -> None:
     """Put the file of an own figure into the run folder.
 
     Raises:
-        RecordError: It was changed since the episode was set up.
+        RecordError: It was changed since the engine was made.
         FileError: It cannot be read or written.
     """
     if not manifest.figure_sha256:
@@ -149,7 +147,8 @@ def keep_figure(folder: Path, manifest: Manifest) -> None:
     content = content_of(Path(manifest.config.figure))
     if sha256(content).hexdigest() != manifest.figure_sha256:
         raise RecordError(
-            f"{readable(manifest.config.figure)} was changed while the episode began; begin again."
+            f"{readable(manifest.config.figure)} is not the figure any more that the engine was "
+            "made with; put it back, or begin again with a new engine."
         )
     write_whole(folder / FIGURE, content)
 

@@ -70,7 +70,7 @@ def describe(config: EpisodeConfig, who: ModelInfo, world: World, parts: Parts) 
         engine_lacks=abilities(world).lacking(),
         labeling="" if tagger is None else type(tagger).__name__,
         isolation=who.isolation,
-        figure_sha256=digest_in(world, config.figure),
+        figure_sha256=digest_in(world),
     )
 
 

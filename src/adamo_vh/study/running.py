@@ -13,6 +13,7 @@ from adamo_vh.errors import ConfigError
 from adamo_vh.inference.registry import is_remote
 from adamo_vh.record.signing import Signer
 from adamo_vh.session.builtin import check_scene
+from adamo_vh.session.figures import check_figure, is_own
 from adamo_vh.session.forecasting import check_price
 from adamo_vh.session.minds import model_of
 from adamo_vh.study.cluster import Cluster, RayExecutor
@@ -138,12 +139,16 @@ def check_parts(episodes: Iterable[Planned], budget: Budget | None = None) -> No
 
     Raises:
         SceneError: A scene is unknown or wrong.
+        FileError: An own figure cannot be used.
         ModelConfigError: A model is unknown or lacks a key or an extra.
         ModelError: A model has to be asked what it can do, and cannot be reached.
         ConfigError: There is a budget of money, and the price of a model is not known.
     """
     for scene in dict.fromkeys(one.config.scene for one in episodes):
         check_scene(scene)
+    for figure in dict.fromkeys(one.config.figure for one in episodes):
+        if is_own(figure):
+            check_figure(Path(figure))
     models = {(one.config.model, one.config.tool_calls): one.config for one in episodes}
     for config in models.values():
         model = model_of(config.model, tools=config.tool_calls, profile=config.profile)

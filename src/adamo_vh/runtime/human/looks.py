@@ -56,6 +56,8 @@ class Figure:
     garments: tuple[Garment, ...]
     shapes: Mapping[str, Mapping[str, NDArray[np.float32]]] | None = None
     """Of an own figure, its face: by garment and shape, (N, 3) how far each vertex goes, metres."""
+    sha256: str = ""
+    """Of the file of an own figure."""
 
     @property
     def triangle_count(self) -> int:
@@ -70,19 +72,6 @@ class Figure:
 def is_own(variant: str) -> bool:
     """Whether a figure is named by its file."""
     return variant.lower().endswith(OWN)
-
-
-def identity(variant: str) -> str:
-    """What tells the looks of a figure from all others: its name, or the digest of its file.
-
-    Raises:
-        FileError: An own figure cannot be used.
-    """
-    if not is_own(variant):
-        return variant
-    from adamo_vh.runtime.human.own.reading import own_figure
-
-    return own_figure(Path(variant)).report.sha256
 
 
 def load_figure(variant: str = VARIANTS[0]) -> Figure:

@@ -14,7 +14,7 @@ from adamo_vh.episode.config import EpisodeConfig
 from adamo_vh.episode.result import read_manifest
 from adamo_vh.errors import ConfigError
 from adamo_vh.inference.model import ModelKind
-from adamo_vh.record.run_folder import FRAMES, MANIFEST, RESULT, SCENE, reserve
+from adamo_vh.record.run_folder import FIGURE, FRAMES, MANIFEST, RESULT, SCENE, reserve
 from adamo_vh.record.trajectory import Observer, frame_type
 from adamo_vh.service.mcp.offer import Offer
 from adamo_vh.service.seats import Seats
@@ -185,9 +185,9 @@ class Episodes:
         return episode
 
     def _resumed(self, folder: Path) -> OutsideEpisode:
-        # With its own scene in the folder, it is that one whatever is drawn for its number today.
+        # With its own scene or figure in the folder, it is that one whatever is there by its name.
         config = read_manifest(folder).config
-        own = (folder / SCENE).is_file()
+        own = (folder / SCENE).is_file() or (folder / FIGURE).is_file()
         with ExitStack() as stack:
             lent = None if own else self._lent(stack, config)
             done = self._done(folder, config, lent)

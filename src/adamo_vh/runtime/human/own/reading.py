@@ -128,10 +128,9 @@ def _read(content: bytes, name: str) -> Own:
     garments, moves = garments_of(patches, ours=document.asset.generator == _OURS)
     if not garments:
         raise Broken("nothing of it can be seen. Export the character with its meshes.")
-    figure = Figure(Path(name).stem, garments, moves)
+    figure = Figure(Path(name).stem, garments, moves, hashlib.sha256(content).hexdigest())
     told = _report(name, (document, bones), (stature, fit), figure, (pieces, surfaces.pictures))
-    sha256 = hashlib.sha256(content).hexdigest()
-    return Own(figure, replace(told, sha256=sha256, notes=tuple(dict.fromkeys(notes))))
+    return Own(figure, replace(told, notes=tuple(dict.fromkeys(notes))))
 
 
 def owners_of(nodes: Mapping[str, int], tree: Tree, pieces: Sequence[Piece] = ()) -> list[str]:
@@ -224,7 +223,7 @@ def _report(
     names = [node.name for node in document.nodes]
     return Conformance(
         name=_shown(name),
-        sha256="",
+        sha256=figure.sha256,
         source=bones.source,
         bones={
             bone: readable(names[node])[:60]
