@@ -205,6 +205,7 @@ def test_a_map_that_names_one_node_twice():
     bones = told["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"]
     bones["leftHand"] = bones["rightHand"]
     assert "is both" in refusal(packed(told, binary))
+    bones["leftTentacle"] = bones["spine"]
     bones["leftHand"] = {"node": "x"}
     assert "leftHand" in refusal(packed(told, binary))
 
@@ -220,3 +221,11 @@ def test_a_large_file_is_not_read_whole(tmp_path):
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(FileError, match="cannot be read"):
         content_of(tmp_path / "none.glb")
+
+
+def test_bones_that_nobody_knows_are_passed_over():
+    told, binary = parts(rig(Rig("nothing", vrm="1", garments=("lids",), plain=True)))
+    bones = told["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"]
+    bones |= {"leftTentacle": bones["leftHand"], "leftIndex99": bones["spine"], "": {"node": 1}}
+    report = own_figure_of(packed(told, binary), "x.glb").report
+    assert not {"leftTentacle", "leftIndex99", ""} & {*report.bones}

@@ -169,6 +169,10 @@ def test_missing_bones_are_named_with_what_helps():
         ("DEF-thigh.L", "leftUpperLeg"),
         ("Bip01 L Forearm", "leftLowerArm"),
         ("CC_Base_R_Hand", "rightHand"),
+        ("Bip01 L Finger0", "leftThumb1"),
+        ("Bip01 R Finger12", "rightIndex3"),
+        ("left_elbow", "leftLowerArm"),
+        ("rForeArm", "rightLowerArm"),
         ("lHand", "leftHand"),
         ("LeftHandIndex2", "leftIndex2"),
         ("Right Middle Proximal", "rightMiddle1"),
@@ -185,6 +189,8 @@ def test_names_of_bones_are_understood(name, bone):
     assert told.bone == bone
 
 
-@pytest.mark.parametrize("name", ["Camera", "LeftToe_End", "hair_01", "", "Skirt.L.002", "頭"])
+@pytest.mark.parametrize(
+    "name", ["Camera", "LeftToe_End", "hair_01", "", "Skirt.L.002", "頭", "LeftIndex99"]
+)
 def test_other_names_mean_nothing(name):
     assert meaning(name) is None

@@ -27,6 +27,18 @@ OPTIONAL: Mapping[str, str] = {
 }
 """What it means that a bone is missing."""
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
+_KNOWN = frozenset(
+    (
+        *("hips", "spine", "chest", "upperChest", "neck", "head", "jaw"),
+        *(
+            side + bone
+            for side in ("left", "right")
+            for bone in (*LIMBS, "Shoulder", "Toes", "Eye")
+        ),
+        *(f"{s}{finger}{n}" for s in ("left", "right") for finger in FINGERS for n in range(1, 4)),
+    )
+)
+"""Bones of VRM, with numbered fingers."""
 _THUMB = ("Metacarpal", "Proximal", "Distal")
 _PHALANX = ("Proximal", "Intermediate", "Distal")
 
@@ -76,7 +88,11 @@ def bones_of(document: Document, tree: Tree) -> Bones:
     """
     named, source = _told_by_vrm(document.extensions)
     if source:
-        found = {bone: node for bone, node in named.items() if 0 <= node < len(tree.names)}
+        found = {
+            bone: node
+            for bone, node in named.items()
+            if bone in _KNOWN and 0 <= node < len(tree.names)
+        }
     else:
         found = _told_by_names(document, tree)
         whose = dialect(tree.names)

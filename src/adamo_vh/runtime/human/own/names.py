@@ -87,6 +87,7 @@ _FINGERS = {
     "little": "Little",
     "pinky": "Little",
 }
+_ORDER = ("Thumb", "Index", "Middle", "Ring", "Little")
 _PARTS = {"metacarpal": 0, "proximal": 1, "intermediate": 2, "distal": 3, "tip": 4, "end": 4}
 
 
@@ -117,7 +118,13 @@ def meaning(name: str) -> Meaning | None:
         part = next((_PARTS[word] for word in letters if word in _PARTS), None)
         number = part if part is not None else (numbers[-1] if numbers else 1)
         known = {finger, *_PARTS, "finger", "hand"}
-        return Meaning(f"{side}{_FINGERS[finger]}{number}", rank) if {*letters} <= known else None
+        is_bone = {*letters} <= known and number <= 4
+        return Meaning(f"{side}{_FINGERS[finger]}{number}", rank) if is_bone else None
+    digits = next((word for word in reversed(rest) if word.isdigit()), "")
+    if side and letters == ["finger"] and len(digits) in (1, 2) and digits[0] in "01234":
+        # Biped's: the first digit is the finger, the second its part after the first.
+        part = 1 if len(digits) == 1 else int(digits[1]) + 1
+        return Meaning(f"{side}{_ORDER[int(digits[0])]}{min(part, 4)}", rank)
     key = "".join(letters)
     if side and key in _SIDED and (not numbers or numbers[-1] in (0, 1)):
         return Meaning(side + _SIDED[key], rank + sum(numbers))
