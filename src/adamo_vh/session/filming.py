@@ -73,9 +73,17 @@ class FilmSet:
         return self.engine.stage.picture(self.engine.body.stance, camera)
 
     def eyes(self, width_px: int, height_px: int) -> NDArray[np.uint8]:
-        """(H, W, 3) the moment of the last picture, through the figure's eyes."""
+        """(H, W, 3) the moment of the last picture, through the eyes of the figure as it is drawn.
+
+        They go down with her when she crouches. The eyes that the agent sees through stay at their
+        height over the feet, whatever the figure does.
+        """
+        from adamo_vh.runtime.embodiment import FOV_Y_RAD
+
         stance = self.engine.body.stance
-        camera = self.engine.stage.shown(stance).body.camera(width_px, height_px)
+        shown = self.engine.stage.shown(stance)
+        size_px, heading = (width_px, height_px), shown.body.heading_rad
+        camera = Camera.towards(shown.eyes, shown.body.gaze, FOV_Y_RAD, size_px, heading)
         return self.engine.stage.picture(stance, camera, head=False, again=True)
 
     def idling(self, seconds: float) -> AbstractContextManager[None]:

@@ -70,6 +70,10 @@ export class Face {
     this.listening = on;
   }
 
+  get isListening(): boolean {
+    return this.listening;
+  }
+
   /** The joint of the eyelids is turned so far, radians: shown by the lids' own shape. */
   turnLids(angle: number): void {
     this.lids = Math.min(1, Math.max(0, angle / LIDS_CLOSED));

@@ -1,8 +1,9 @@
 // The person: a skinned figure whose joints are set from the poses of the track.
 
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
-import { type Bone, Group, type Material, Matrix4, type Object3D, type SkinnedMesh, Vector3 } from "three";
+import { type Bone, Group, type Material, Matrix4, type Object3D, Quaternion, type SkinnedMesh, Vector3 } from "three";
 import { Face } from "./face.ts";
+import { type Bearing, Life } from "./life.ts";
 import { bonesByName, nodesByName, skinnedIn } from "./loading.ts";
 import type { Room } from "./room.ts";
 import { Skin } from "./skin.ts";
@@ -21,6 +22,9 @@ export class Figure {
   /** The same body for the plain look. */
   private readonly skins: Skin[];
   private isFull = false;
+  private readonly life = new Life(() => this.isFull);
+  /** Joints that her bearing turns, and how the motion has them. */
+  private readonly borne: { bone: Bone; own: Quaternion; more: Quaternion }[];
   private readonly head: Bone | undefined;
   private readonly feet: Bone[];
   private readonly lids: number;
@@ -36,6 +40,11 @@ export class Figure {
     this.face = new Face(this.meshes.filter((mesh) => mesh.morphTargetDictionary));
     this.lids = bones.indexOf(byName.get("eyelids"));
     this.head = byName.get("head");
+    const { chest, neck, head } = this.life;
+    this.borne = Object.entries({ chest, neck, head }).flatMap(([name, more]) => {
+      const bone = byName.get(name);
+      return bone ? [{ bone, own: bone.quaternion.clone(), more }] : [];
+    });
     this.feet = ["foot_l", "foot_r"].map((name) => byName.get(name)).filter((bone) => bone !== undefined);
     for (const mesh of this.meshes) {
       mesh.frustumCulled = false;
@@ -67,6 +76,26 @@ export class Figure {
     // The lids turn about the Y axis; the face has a shape for it that lies flush.
     if (this.lids >= 0) this.face.turnLids(2 * Math.asin(moment.joints[this.lids * 4 + 1] ?? 0));
     this.bones[0]?.position.set(...moment.pelvis);
+    for (const { bone, own } of this.borne) own.copy(bone.quaternion);
+    this.bear();
+  }
+
+  /**
+   * Let her bearing go on, on top of the motion; returns whether anything moved.
+   * @param viewer Where whoever looks on is, in the room.
+   */
+  live(seconds: number, bearing: Bearing, viewer: Vector3): boolean {
+    const { head } = this;
+    if (!head?.parent) return false;
+    const own = this.borne.find(({ bone }) => bone === head)?.own ?? head.quaternion;
+    const from = new Matrix4().compose(head.position, own, head.scale).premultiply(head.parent.matrixWorld);
+    const moved = this.life.update(seconds, bearing, viewer.clone().applyMatrix4(from.invert()).sub(EYES));
+    if (moved) this.bear();
+    return moved;
+  }
+
+  private bear(): void {
+    for (const { bone, own, more } of this.borne) bone.quaternion.copy(own).multiply(more);
     this.group.updateMatrixWorld(true);
   }
 

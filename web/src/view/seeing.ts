@@ -7,6 +7,7 @@ import { readAloud, spoken } from "../mind/words.ts";
 import { ownAddress } from "../server.ts";
 import type { Show } from "../show.ts";
 import type { CameraKind } from "./cameras.ts";
+import { BEARINGS } from "./life.ts";
 import { Marks } from "./marks.ts";
 import { type Label, Overlay } from "./overlay.ts";
 import { type Hit, Pointing } from "./pointing.ts";
@@ -38,6 +39,7 @@ export interface Hands {
   /** Whether a click does something. */
   aims: () => boolean;
 }
+
 
 export class Seeing {
   readonly root: HTMLElement;
@@ -95,6 +97,7 @@ export class Seeing {
     this.marks = new Marks(hello.scene, hello.body, stage.room.voxels);
     stage.scene.add(this.marks.group);
     for (const layer of this.layers) this.showLayer(layer, true);
+    stage.attends = () => (hello.live && this.show.player.following ? BEARINGS[this.show.doing] : "busy");
     stage.onDrawn(() => this.drawn());
     this.show.pointed.listen(() => this.light());
     steer(this.canvas, stage.cameras, {

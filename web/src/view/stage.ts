@@ -6,6 +6,7 @@ import type { Moment } from "../track/track.ts";
 import { Cameras } from "./cameras.ts";
 import { ContactShadows } from "./contact.ts";
 import { Figure } from "./figure.ts";
+import type { Bearing } from "./life.ts";
 import { type Lights, lightRoom, surroundings } from "./lights.ts";
 import { loadGltf, type Progress } from "./loading.ts";
 import { EXPOSURE } from "./coding.ts";
@@ -117,6 +118,9 @@ export class Stage {
     room.plain.close();
   }
 
+  /** What she is at; until somebody tells, she leaves her bearing to the motion. */
+  attends: () => Bearing = () => "busy";
+
   /** Called after each picture: for what lies over it, e.g. labels. */
   onDrawn(listener: () => void): void {
     this.afterwards.push(listener);
@@ -191,6 +195,9 @@ export class Stage {
     const seconds = Math.min(since / 1000, 0.25);
     if (this.tick(seconds)) this.dirty = true;
     if (this.figure.face.update(seconds)) this.dirty = true;
+    if (this.moment && this.figure.live(seconds, this.bearing(), this.cameras.camera.position)) {
+      this.shadowsLate = this.dirty = true;
+    }
     if (this.moment && this.cameras.update(this.moment, this.figure, seconds)) this.dirty = true;
     if (!this.dirty || !this.moment) {
       this.drewLast = false;
@@ -212,6 +219,12 @@ export class Stage {
       if (this.quality.note(since)) this.resize();
     }
     this.drewLast = true;
+  }
+
+  /** How she bears herself: what looks out of her eyes goes with the motion alone. */
+  private bearing(): Bearing {
+    if (this.cameras.kind === "eyes") return "busy";
+    return this.figure.face.isListening ? "listening" : this.attends();
   }
 
   private afterFirst(): void {

@@ -1,0 +1,59 @@
+import { Quaternion, Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+import { type Bearing, Life, wished } from "../src/view/life.ts";
+
+const STILL = new Quaternion();
+const BESIDE = new Vector3(2, 1.2, 0.1);
+
+function after(life: Life, seconds: number, bearing: Bearing, viewer = BESIDE): number {
+  for (let t = 0; t < seconds - 1e-9; t += 0.02) life.update(0.02, bearing, viewer);
+  return life.neck.angleTo(STILL) + life.head.angleTo(STILL);
+}
+
+describe("her bearing", () => {
+  it("turns to whom she listens to, within 200 ms, and tilts her head", () => {
+    const life = new Life(() => false);
+    const whole = Math.hypot(wished("listening", BESIDE).yaw);
+    expect(after(life, 0.2, "listening")).toBeGreaterThan(0.9 * whole);
+    expect(wished("listening", BESIDE).roll).toBeGreaterThan(0.05);
+  });
+  it("looks aside and up when she thinks, within 200 ms", () => {
+    const life = new Life(() => false);
+    const ahead = new Vector3(2, 0, 0);
+    expect(after(life, 0.2, "thinking", ahead)).toBeGreaterThan(0.2);
+    expect(wished("thinking", ahead).pitch).toBeLessThan(0);
+  });
+  it("leaves the head to the motion while she does something", () => {
+    const life = new Life(() => false);
+    after(life, 1, "listening");
+    expect(after(life, 2, "busy")).toBeLessThan(0.002);
+    expect(life.update(0.02, "busy", BESIDE)).toBe(false);
+  });
+  it("does not twist her neck for somebody behind her", () => {
+    const behind = wished("listening", new Vector3(-2, 0.3, 0));
+    expect(Math.abs(behind.yaw)).toBeLessThan(0.01);
+    const high = wished("listening", new Vector3(0.5, 0, 3));
+    expect(Math.abs(high.pitch)).toBeLessThan(0.5);
+    expect(Math.abs(wished("listening", new Vector3(0.1, 2, 0)).yaw)).toBeLessThan(0.9);
+  });
+  it("comes to rest, so that nothing is drawn anew, unless she breathes", () => {
+    const still = new Life(() => false);
+    after(still, 2, "idle");
+    expect(still.update(0.02, "idle", BESIDE)).toBe(false);
+    const alive = new Life(() => true, () => 0.9);
+    after(alive, 2, "idle");
+    expect(alive.update(0.02, "idle", BESIDE)).toBe(true);
+    expect(alive.chest.angleTo(STILL)).toBeGreaterThan(0.01);
+  });
+  it("glances a little, to and fro", () => {
+    let turn = 0;
+    const life = new Life(() => true, () => (turn++ * 0.37) % 1);
+    const seen = new Set<string>();
+    for (let i = 0; i < 300; i++) {
+      life.update(0.02, "idle", new Vector3(2, 0, 0));
+      seen.add(life.head.z.toFixed(3));
+    }
+    expect(seen.size).toBeGreaterThan(2);
+    expect(life.head.angleTo(STILL)).toBeLessThan(0.05);
+  });
+});
