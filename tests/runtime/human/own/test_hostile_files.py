@@ -125,6 +125,14 @@ def test_what_is_wrong_is_told(change, says):
     assert any(one in refusal(changed(change)) for one in says.split("|"))
 
 
+def test_a_vertex_far_away():
+    told, binary = parts(sound())
+    view = told["bufferViews"][told["accessors"][1]["bufferView"]]
+    at = view["byteOffset"]
+    broken = binary[:at] + struct.pack("<f", 5e4) + binary[at + 4 :]
+    assert "away from its body" in refusal(packed(told, broken))
+
+
 def test_values_that_are_no_numbers():
     told, binary = parts(sound())
     view = told["bufferViews"][told["accessors"][1]["bufferView"]]

@@ -33,6 +33,8 @@ from adamo_vh.runtime.human.own.tree import Tree, tree_of
 
 _OURS = "ADAMO"
 """The generator of our own files, whose materials are two-sided for others alone."""
+_FARTHEST_M = 3.5
+"""From where it stands to the farthest point of wings, a train or a staff."""
 _DAMAGE = (
     ValueError, TypeError, KeyError, IndexError, ArithmeticError, AttributeError, struct.error,
     RecursionError, MemoryError, np.linalg.LinAlgError, ValidationError,
@@ -128,6 +130,12 @@ def _read(content: bytes, name: str) -> Own:
     garments, moves = garments_of(patches, ours=document.asset.generator == _OURS)
     if not garments:
         raise Broken("nothing of it can be seen. Export the character with its meshes.")
+    far = max(float(np.abs(garment.vertices).max()) for garment in garments)
+    if not far <= _FARTHEST_M:
+        raise Broken(
+            f"a part of it lies {far:.3g} m away from its body as it is drawn. Remove what "
+            "does not belong to it, and export it again."
+        )
     figure = Figure(Path(name).stem, garments, moves, hashlib.sha256(content).hexdigest())
     told = _report(name, (document, bones), (stature, fit), figure, (pieces, surfaces.pictures))
     return Own(figure, replace(told, notes=tuple(dict.fromkeys(notes))))
