@@ -193,8 +193,9 @@ class Solid:
         return np.asarray(np.hypot(np.maximum(along, 0), np.maximum(across, 0)))
 
     def overlaps_height(self, z_min: float, z_max: float) -> bool:
-        """Whether the height ranges share more than 2 mm."""
-        return self.z_min < z_max - 0.002 and self.z_max > z_min + 0.002
+        """Whether the height ranges share more than 2 mm, or half of what is thinner than 4 mm."""
+        shared = min(self.z_max, z_max) - max(self.z_min, z_min)
+        return shared > min(0.002, (self.z_max - self.z_min) / 2, (z_max - z_min) / 2)
 
     @property
     def radius_m(self) -> float:

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -61,6 +62,14 @@ def test_a_free_point_is_its_own_spot() -> None:
 def test_a_point_on_another_thing_goes_beside_it() -> None:
     spots = free_spots(Vec3(0, 0, 0.78), cup(0, 0, 0), [TABLE], [TOP, cup(0, 0, 0)])
     assert 0.1 < spots[0].distance_m < 0.2
+
+
+@pytest.mark.parametrize("sunk_m", [0.0, 0.0003, 0.0008])
+def test_the_thinnest_thing_is_in_the_way_too(sunk_m: float) -> None:
+    key = Solid(0, 0, 0.0275, 0.012, 0, 0.78 - sunk_m, 0.782 - sunk_m)
+    spots = free_spots(Vec3(0, 0, 0.78), cup(0, 0, 0), [TABLE], [TOP, key])
+    at = np.array([[spots[0].center.x, spots[0].center.y]])
+    assert gaps(at, cup(0, 0, 0), [key])[0] >= CLEARANCE_M - 1e-9
 
 
 def test_a_point_high_in_the_air_has_no_spot() -> None:
