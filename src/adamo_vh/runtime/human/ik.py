@@ -154,9 +154,8 @@ def hand_to(
         angle = float(np.linalg.norm(wrist))
         turned_so = forearm @ from_rotation_vectors(wrist * (most / max(most, angle, 1e-9)))
         pose = turned(pose, {joint: forearm.T @ turned_so})
-    places, rotations = joint_frames(pose)
-    reached = places[INDEX[joint]] + rotations[INDEX[joint]] @ offset
-    return pose, float(np.linalg.norm(target - reached))
+    # The turn is only nearly as wished by now; the place is exact.
+    return arm_to(pose, target, hand, offset)
 
 
 _TRIES = 4
