@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, expect, test, vi } from "vitest";
 import { CALM_MS, Checking } from "../src/edit/checking.ts";
-import { Draft, MOST_LIGHTS, placeOf } from "../src/edit/draft.ts";
+import { cornerAt, Draft, MOST_LIGHTS, placeOf } from "../src/edit/draft.ts";
 import { along } from "../src/edit/orbit.ts";
 import { saving } from "../src/edit/remote.ts";
 import { type Catalog, type Finding, readCatalog, readScene, type SceneData, targetOf } from "../src/edit/scene.ts";
@@ -212,4 +212,16 @@ test("lights are added, moved with what they shine at, and removed but for the l
   expect(draft.data.lights).toHaveLength(2);
   for (let i = 0; i < 9; i++) draft.addLight([0, 0]);
   expect(draft.data.lights).toHaveLength(MOST_LIGHTS);
+});
+
+test("an area is reshaped by its corners, and never turned inside out", () => {
+  const draft = new Draft(scene());
+  const ref = { kind: "areas", index: 0 } as const;
+  expect(cornerAt(draft.data, ref, [-2.05, -2.9], 0.16)).toEqual(["max", "min"]);
+  expect(cornerAt(draft.data, ref, [-2.5, -2.5], 0.16)).toBeNull();
+  expect(cornerAt(draft.data, cup, [-2, -2], 0.16)).toBeNull();
+  draft.reshape(0, ["max", "min"], [-1, -2.5]);
+  expect(draft.data.areas[0]).toMatchObject({ min: [-3, -2.5], max: [-1, -2] });
+  draft.reshape(0, ["max", "max"], [-5, -5]);
+  expect(draft.data.areas[0]).toMatchObject({ min: [-3, -2.5], max: [-2.9, -2.4] });
 });

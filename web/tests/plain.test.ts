@@ -116,3 +116,19 @@ test("a body is bent and shaped as the graphics card would do it", () => {
     }
   }
 });
+
+test("a body is worked out again only for another pose or another face", () => {
+  const mesh = skinned();
+  const skin = new Skin(mesh, new Plain(brightness()));
+  const light = new BodyLight([], [], () => 1);
+  const versions = (): number => (skin.shown.geometry.getAttribute("position") as BufferAttribute).version;
+  skin.update(light);
+  const first = versions();
+  skin.update(light);
+  expect(versions()).toBe(first);
+  skin.isStale = true;
+  skin.update(light);
+  mesh.morphTargetInfluences = [0.5];
+  skin.update(light);
+  expect(versions()).toBe(first + 2);
+});

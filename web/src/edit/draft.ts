@@ -8,8 +8,13 @@ const MOST_UNDONE = 200;
 const MOST_ID = 9999;
 /** A scene has at least one light, and at most so many. */
 export const MOST_LIGHTS = 6;
+/** An area is at least so wide and so deep, metres. */
+const LEAST_AREA_M = 0.1;
 /** Below the ceiling, metres. */
 const LIGHT_BELOW_M = 0.1;
+
+/** A corner of an area: which of its edges meet there, across x and across y. */
+export type Corner = readonly ["min" | "max", "min" | "max"];
 
 /** To the centimetre and the degree: what a hand means. */
 export const cm = (value: number): number => Math.round(value * 100) / 100 + 0;
@@ -111,6 +116,17 @@ export class Draft {
     }, key);
   }
 
+  /** Put a corner of an area somewhere; the one across stays where it is. */
+  reshape(index: number, corner: Corner, at: Two, key = ""): void {
+    this.edit(({ areas: { [index]: area } }) => {
+      if (!area) return;
+      for (const axis of [0, 1] as const) {
+        if (corner[axis] === "min") area.min[axis] = cm(Math.min(at[axis], area.max[axis] - LEAST_AREA_M));
+        else area.max[axis] = cm(Math.max(at[axis], area.min[axis] + LEAST_AREA_M));
+      }
+    }, key);
+  }
+
   /** Turn something by so many degrees, counter-clockwise as seen from above. */
   turn(ref: Ref, degrees: number, key = ""): void {
     this.edit((data) => {
@@ -175,6 +191,15 @@ export class Draft {
       for (const item of data.objects) if (pieceOf(item.on) === old) item.on = item.on.replace(old, name);
     }, `rename ${index}`);
   }
+}
+
+/** The corner of an area that is nearest to a point of the floor; null if none is near. */
+export function cornerAt(data: SceneData, ref: Ref | null, [x, y]: Two, near: number): Corner | null {
+  const area = ref?.kind === "areas" ? data.areas[ref.index] : undefined;
+  if (!area) return null;
+  const side = (axis: 0 | 1, value: number): "min" | "max" => (Math.abs(value - area.min[axis]) <= Math.abs(value - area.max[axis]) ? "min" : "max");
+  const corner: Corner = [side(0, x), side(1, y)];
+  return Math.hypot(x - area[corner[0]][0], y - area[corner[1]][1]) <= near ? corner : null;
 }
 
 /** Where something is on the floor plane; null if there is no such thing. */

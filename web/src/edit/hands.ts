@@ -1,7 +1,7 @@
 // Pointer and keyboard of the editor: select, move, turn, nudge, remove.
 
 import { steer } from "../view/pointer.ts";
-import { type Draft, placeOf } from "./draft.ts";
+import { type Corner, cornerAt, type Draft, placeOf } from "./draft.ts";
 import { along } from "./orbit.ts";
 import type { Picture } from "./picture.ts";
 import { type Catalog, isSame, type Ref, type Two } from "./scene.ts";
@@ -12,6 +12,8 @@ const NUDGE_M = 0.05;
 /** A surface whose outward direction points up at least this much carries things. */
 const LEVEL = 0.8;
 const CLICK_PX = 5;
+/** A corner of the selected area is taken within this distance. */
+const NEAR_CORNER_M = 0.16;
 /** What carries nothing. */
 const LOOKED_THROUGH: readonly Ref["kind"][] = ["areas", "agent", "objects", "lights"];
 
@@ -22,6 +24,8 @@ interface Grip {
   height: number;
   from: { x: number; y: number };
   moved: boolean;
+  /** Of an area, if that is held. */
+  corner: Corner | null;
 }
 
 /** Let the pointer work on the picture. */
@@ -30,13 +34,20 @@ export function takeHold(canvas: HTMLCanvasElement, picture: Picture, draft: Dra
 
   const grab = (event: PointerEvent): boolean => {
     if (event.shiftKey) return false;
+    const { selected, data } = draft;
+    const floor = picture.atHeight(event, 0);
+    const corner = floor && cornerAt(data, selected, [floor.x, floor.y], NEAR_CORNER_M);
+    if (selected && corner) {
+      grip = { ref: selected, offset: [0, 0], height: 0, from: { x: event.clientX, y: event.clientY }, moved: false, corner };
+      return true;
+    }
     const hit = picture.at(event);
     // An area covers much of the floor: the camera is turned over it until it is selected.
     if (!hit?.ref || (hit.ref.kind === "areas" && !isSame(hit.ref, draft.selected))) return false;
     const place = placeOf(draft.data, hit.ref);
     if (!place) return false;
     const offset: Two = [place[0] - hit.point.x, place[1] - hit.point.y];
-    grip = { ref: hit.ref, offset, height: hit.point.z, from: { x: event.clientX, y: event.clientY }, moved: false };
+    grip = { ref: hit.ref, offset, height: hit.point.z, from: { x: event.clientX, y: event.clientY }, moved: false, corner: null };
     draft.select(hit.ref);
     return true;
   };
@@ -49,7 +60,8 @@ export function takeHold(canvas: HTMLCanvasElement, picture: Picture, draft: Dra
     const key = `drag ${ref.kind} ${ref.index}`;
     if (ref.kind !== "objects") {
       const point = picture.atHeight(event, height);
-      if (point) draft.place(ref, inside(draft, [point.x + offset[0], point.y + offset[1]]), "", key);
+      if (point && grip.corner) draft.reshape(ref.index, grip.corner, inside(draft, [point.x, point.y]), key);
+      else if (point) draft.place(ref, inside(draft, [point.x + offset[0], point.y + offset[1]]), "", key);
       return;
     }
     const hit = picture.at(event, (other) => isSame(other, ref) || LOOKED_THROUGH.includes(other.kind));

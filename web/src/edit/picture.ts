@@ -112,7 +112,8 @@ export class Picture {
       node.rotation.z = radians(item.yaw_deg);
     });
     data.areas.forEach((area, index) => {
-      show({ kind: "areas", index }, JSON.stringify([area.min, area.max]), () => areaMesh(area));
+      const isHeld = isSame(selected, { kind: "areas", index });
+      show({ kind: "areas", index }, JSON.stringify([area.min, area.max, isHeld]), () => areaMesh(area, isHeld));
     });
     data.lights.forEach((light, index) => {
       show({ kind: "lights", index }, JSON.stringify(light), () => lightMesh(light)).position.set(...light.position);

@@ -29,6 +29,7 @@ import type { FloorArea, SceneData, SceneLight, Three } from "./scene.ts";
 const ACCENT = 0xf0976a;
 const WAITING = new MeshLambertMaterial({ color: 0x9a8d80, transparent: true, opacity: 0.45 });
 const AREA = new MeshBasicMaterial({ color: 0x3f86b8, transparent: true, opacity: 0.22, side: DoubleSide, depthWrite: false });
+const HANDLE = new MeshBasicMaterial({ color: ACCENT });
 const EDGE = new LineBasicMaterial({ color: 0x2f6f9f });
 const BODY = new MeshLambertMaterial({ color: ACCENT, transparent: true, opacity: 0.75 });
 const LAMP = new MeshBasicMaterial({ color: 0xffd36b });
@@ -101,10 +102,19 @@ function bareFloor({ x_min, x_max, y_min, y_max }: SceneData["room"]): Object3D 
   return floor;
 }
 
-export function areaMesh({ min, max }: FloorArea): Object3D {
+/** An area on the floor; with handles at its corners while it is selected. */
+export function areaMesh({ min, max }: FloorArea, isHeld: boolean): Object3D {
   const plane = new PlaneGeometry(Math.max(0.01, max[0] - min[0]), Math.max(0.01, max[1] - min[1]));
   const group = new Group().add(new Mesh(plane, AREA), new LineSegments(new EdgesGeometry(plane), EDGE));
   group.position.set((min[0] + max[0]) / 2, (min[1] + max[1]) / 2, 0.012);
+  if (!isHeld) return group;
+  for (const x of [-1, 1]) {
+    for (const y of [-1, 1]) {
+      const handle = new Mesh(new SphereGeometry(0.05, 12, 8), HANDLE);
+      handle.position.set((x * (max[0] - min[0])) / 2, (y * (max[1] - min[1])) / 2, 0.02);
+      group.add(handle);
+    }
+  }
   return group;
 }
 

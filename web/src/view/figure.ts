@@ -97,6 +97,7 @@ export class Figure {
   private bear(): void {
     for (const { bone, own, more } of this.borne) bone.quaternion.copy(own).multiply(more);
     this.group.updateMatrixWorld(true);
+    for (const skin of this.skins) skin.isStale = true;
   }
 
   /** Give her the full look, or the plain one. */

@@ -34,6 +34,8 @@ function shapesOf(geometry: BufferGeometry): Shape[] {
 
 export class Skin {
   readonly shown: Mesh;
+  /** Whether the pose or the light is another one since it was shown last. */
+  isStale = true;
   private readonly places: BufferAttribute;
   private readonly light: BufferAttribute;
   private readonly rest: Float32Array;
@@ -75,7 +77,8 @@ export class Skin {
 
   /** Take on the pose of the skeleton and the shapes of the face, under this light. */
   update(light: BodyLight): void {
-    this.shape();
+    if (!this.shape() && !this.isStale) return;
+    this.isStale = false;
     const bones = this.mesh.skeleton.boneMatrices;
     if (!bones) return;
     const { shaped, normals, joints, weights, tint } = this;
@@ -113,9 +116,10 @@ export class Skin {
     this.places.needsUpdate = this.light.needsUpdate = true;
   }
 
-  private shape(): void {
+  /** Take on the shapes of the face; returns whether they are others. */
+  private shape(): boolean {
     const wished = this.mesh.morphTargetInfluences ?? [];
-    if (this.mixed.every((share, i) => share === Math.fround(wished[i] ?? 0))) return;
+    if (this.mixed.every((share, i) => share === Math.fround(wished[i] ?? 0))) return false;
     this.mixed.set(wished);
     this.shaped.set(this.rest);
     this.shapes.forEach(({ corners, by }, i) => {
@@ -128,5 +132,6 @@ export class Skin {
         }
       });
     });
+    return true;
   }
 }
