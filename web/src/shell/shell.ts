@@ -1,6 +1,6 @@
 // The page's frame: where everything has its place.
 
-import iconUrl from "../icon.svg";
+import iconUrl from "../icon.svg?inline"; // So that a page without a server has it too.
 import { el, icon, ICONS, write } from "../dom.ts";
 import { themeButton } from "./theme.ts";
 
