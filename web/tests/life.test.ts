@@ -40,6 +40,7 @@ describe("her bearing", () => {
     const still = new Life(() => false);
     after(still, 2, "idle");
     expect(still.update(0.02, "idle", BESIDE)).toBe(false);
+    expect(still.update(0.02, "idle", BESIDE.clone().addScalar(1e-5))).toBe(false);
     const alive = new Life(() => true, () => 0.9);
     after(alive, 2, "idle");
     expect(alive.update(0.02, "idle", BESIDE)).toBe(true);

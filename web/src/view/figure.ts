@@ -85,10 +85,11 @@ export class Figure {
    * @param viewer Where whoever looks on is, in the room.
    */
   live(seconds: number, bearing: Bearing, viewer: Vector3): boolean {
-    const { head } = this;
-    if (!head?.parent) return false;
-    const own = this.borne.find(({ bone }) => bone === head)?.own ?? head.quaternion;
-    const from = new Matrix4().compose(head.position, own, head.scale).premultiply(head.parent.matrixWorld);
+    const below = this.borne[0]?.bone.parent;
+    if (!below) return false;
+    // As the motion has trunk and head: what her bearing adds would lead it on.
+    const from = below.matrixWorld.clone();
+    for (const { bone, own } of this.borne) from.multiply(new Matrix4().compose(bone.position, own, bone.scale));
     const moved = this.life.update(seconds, bearing, viewer.clone().applyMatrix4(from.invert()).sub(EYES));
     if (moved) this.bear();
     return moved;

@@ -32,7 +32,8 @@ const BREATH_S = 4;
 const BREATH = 0.018;
 const GLANCE = 0.022;
 const NEXT_GLANCE_S: readonly [number, number] = [0.5, 2.2];
-const LEAST = 0.0004;
+/** What is less is not seen, and not drawn anew. */
+const LEAST = 0.0008;
 /** How far the head goes to whoever looks on. */
 const TOWARDS: Readonly<Record<Bearing, number>> = { busy: 0, idle: 0.8, listening: 1, thinking: 0.25 };
 
@@ -100,9 +101,9 @@ export class Life {
     let moved = lives;
     for (const key of ["yaw", "pitch", "roll"] as const) {
       const left = wish[key] - this.now[key];
-      if (Math.abs(left) < LEAST) this.now[key] = wish[key];
-      else this.now[key] += left * share;
-      if (left !== 0) moved = true;
+      if (Math.abs(left) < LEAST) continue;
+      this.now[key] += left * share;
+      moved = true;
     }
     turned(this.neck, this.now, NECK);
     turned(this.head, this.now, 1 - NECK);
