@@ -118,7 +118,11 @@ def _instruction(draw: random.Random, scene: str) -> tuple[str, str]:
         same = set(first.split()) & set(second.split())
         text = f"{draw.choice(_ASK)} {one} and {other} on the floor"
         if same:
-            return text, f"one_on_floor {first}" if first == second else ""
+            if first != second:
+                return text, ""
+            # "The padlock and the lock" may be one thing or two.
+            either = f" | only_floor {first}" if one != other and " " in first else ""
+            return text, f"one_on_floor {first}{either}"
         return text, f"{_on_floor(first)} & {_on_floor(second)}"
     if kind == "group":
         return draw.choice(

@@ -95,6 +95,15 @@ def test_what_is_not_so_is_said(world, text, says, never):
     assert never.strip("^") not in answer[: 4 if never[0] == "^" else None]
 
 
+@pytest.mark.parametrize("word", ["bookcase", "bookshelf", "rack"])
+def test_what_was_taken_for_something_is_told(world, word):
+    answer = _play(world, f"Put the plate on the {word}", _SMALL).answer
+    assert not answer.startswith("Done")
+    if world[0] == "s2":
+        assert answer.startswith("As far as I can tell: Plate_57 rests on the tall shelf")
+        assert answer.endswith(f"I took the tall shelf for the {word}.")
+
+
 class Overheard(BaselineModel):
     """The baseline, with its notes kept."""
 

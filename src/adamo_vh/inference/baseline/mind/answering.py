@@ -8,7 +8,7 @@ from adamo_vh.inference.baseline.language.plan import Act, Goal, Plan, Relation
 from adamo_vh.inference.baseline.language.requests import CAN
 from adamo_vh.inference.baseline.mind.asking import bare, tell, verdict
 from adamo_vh.inference.baseline.mind.beliefs import OF_CONDITION
-from adamo_vh.inference.baseline.mind.evidence import anchor_of, claim
+from adamo_vh.inference.baseline.mind.evidence import anchor_of, claim, taken_for
 from adamo_vh.inference.baseline.mind.memory import Finish, Job, Memory, Status
 from adamo_vh.inference.baseline.mind.searching import Stage
 from adamo_vh.inference.baseline.prompt.reading import Prompt
@@ -129,6 +129,11 @@ def _identity(goal: Goal, index: int, jobs: list[Job], memory: Memory, account: 
     if target.source and target.source[0] is Relation.SURFACE and jobs:
         account.open_ended = True
         account.doubts.append(f"I cannot tell by sight that it was on the {target.source[1][0]}.")
+    if goal.relation is Relation.SURFACE and goal.furniture:
+        rests = [memory.rests.get(job.tag, "") for job in jobs]
+        for body in sorted({taken_for(goal.furniture, where) for where in rests} - {""}):
+            account.open_ended = True
+            account.doubts.append(f"I took {body} for the {goal.furniture}.")
     if not target.ids:
         unsure = [job.tag for job in jobs if _fit(job, memory) < _SURE]
         opaque = [j.tag for j in jobs if class_of(j.tag) is None and j.tag not in unsure]

@@ -31,6 +31,8 @@ _SAME = {
     "console table": "console", "end table": "side table", "chairs": "chair", "tables": "table",
     "windowsill": "window sill", "sill": "window sill",
 }  # fmt: skip
+_LIKE = ("bookshelf", "bookcase", "rack")
+"""Words that a shelf may be meant by, and something else as well."""
 TOP = ("top", "upper", "highest")
 LOW = ("lower", "bottom", "lowest")
 
@@ -56,6 +58,18 @@ def named(furniture: str, support: str) -> bool:
     if words[-1] != body.split()[-1]:
         return False
     return all(_qualifies(word, body, level) for word in words[:-1])
+
+
+def taken_for(furniture: str, support: str) -> str:
+    """What was taken for furniture that it is not surely; empty if it is what the word says.
+
+    Args:
+        furniture: The user's word, e.g. "bookcase".
+        support: What feedback names, e.g. "on the tall shelf (middle)".
+    """
+    if furniture not in _LIKE or not named(furniture, support):
+        return ""
+    return re.sub(r"^(?:on|in|at) ", "", support.lower()).partition(" (")[0]
 
 
 def _qualifies(word: str, body: str, level: str) -> bool:
