@@ -31,7 +31,7 @@ _SAME = {
     "console table": "console", "end table": "side table", "chairs": "chair", "tables": "table",
     "windowsill": "window sill", "sill": "window sill",
 }  # fmt: skip
-_LIKE = ("bookshelf", "bookcase", "rack")
+_LIKE = ("bookshelf", "bookcase")
 """Words that a shelf may be meant by, and something else as well."""
 TOP = ("top", "upper", "highest")
 LOW = ("lower", "bottom", "lowest")
@@ -67,7 +67,7 @@ def taken_for(furniture: str, support: str) -> str:
         furniture: The user's word, e.g. "bookcase".
         support: What feedback names, e.g. "on the tall shelf (middle)".
     """
-    if furniture not in _LIKE or not named(furniture, support):
+    if furniture not in _LIKE or not support or not named(furniture, support):
         return ""
     return re.sub(r"^(?:on|in|at) ", "", support.lower()).partition(" (")[0]
 
