@@ -153,7 +153,7 @@ class Painter:
     def _watch_parts(self) -> None:
         """Note what is elsewhere than before: from now on it is drawn anew each time."""
         geoms, brush = len(self.parts.geoms), self._brush
-        places = np.column_stack([brush.at[:geoms], brush.turns.reshape(geoms, -1)])
+        places = np.column_stack([brush.at[:geoms], brush.turns.reshape(geoms, 16)])
         if len(self._places):
             self._roams[:geoms] |= (places != self._places).any(axis=1)
         self._places = places
