@@ -33,6 +33,8 @@ export class Cameras {
   private readonly aim = new Vector3();
   private side = 0;
   private settled = false;
+  /** Whether somebody has taken the free camera: until then it turns after her. */
+  private taken = false;
   private readonly calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
   constructor(
@@ -87,16 +89,25 @@ export class Cameras {
     this.settled = false;
   }
 
+  /** Leave the free camera to whoever moves it. */
+  private take(): void {
+    if (!this.taken && this.kind === "free") this.stayHere();
+    this.taken = true;
+  }
+
   turn(dx: number, dy: number): void {
+    this.take();
     this.heading -= dx;
     this.elevation = Math.min(1.35, Math.max(-0.25, this.elevation + dy));
   }
 
   zoom(factor: number): void {
+    this.take();
     this.distance = Math.min(9, Math.max(0.7, this.distance * factor));
   }
 
   pan(dx: number, dy: number): void {
+    this.take();
     const right = towards(this.heading + Math.PI / 2, 0);
     this.target.addScaledVector(right, -dx * this.distance).addScaledVector(UP, dy * this.distance);
     this.keepInside(this.target, 0.3);
@@ -131,8 +142,8 @@ export class Cameras {
     const before = this.camera.matrixWorld.elements.slice();
     if (this.kind === "eyes") this.throughHerEyes(figure);
     else {
-      const wish = this.kind === "free" ? this.free() : this.behind(moment);
-      const slow = this.kind === "free" ? 0.07 : 0.35;
+      const wish = this.kind === "free" ? this.free(moment) : this.behind(moment);
+      const slow = this.kind === "free" && this.taken ? 0.07 : 0.35;
       const share = this.settled && !this.calm ? ease(seconds, slow) : 1;
       this.place.lerp(wish.place, share);
       this.aim.lerp(wish.aim, share);
@@ -146,9 +157,11 @@ export class Cameras {
     return this.camera.matrixWorld.elements.some((value, i) => Math.abs(value - (before[i] ?? 0)) > 1e-5);
   }
 
-  private free(): { place: Vector3; aim: Vector3 } {
-    const way = towards(this.heading, this.elevation);
-    return { place: this.reachable(this.target, way, this.distance), aim: this.target.clone() };
+  private free(moment: Moment): { place: Vector3; aim: Vector3 } {
+    const [x, y] = moment.body;
+    const place = this.reachable(this.target, towards(this.heading, this.elevation), this.distance);
+    const aim = this.target.clone();
+    return { place, aim: this.taken ? aim : aim.lerp(new Vector3(x, y, 0.95), 0.7) };
   }
 
   private behind(moment: Moment): { place: Vector3; aim: Vector3 } {
