@@ -13,7 +13,6 @@ from adamo_vh.geometry import Array, Solid, Vec3
 from adamo_vh.observation import BodyState, Percept
 from adamo_vh.runtime import physics
 from adamo_vh.runtime.embodiment import EYE_HEIGHT_M, FOV_Y_RAD, REACH_M, REACH_TOP_M, Stance
-from adamo_vh.runtime.human.grasp import Thing
 from adamo_vh.runtime.human.motion import drop_motion, look_motion, pick_motion, walk_motion
 from adamo_vh.runtime.navigation import BODY_RADIUS_M, FloorMap, Path, Ways
 from adamo_vh.runtime.placement import MAX_CORRECTION_M, Spot, free_spots, spread
@@ -108,7 +107,7 @@ class BuiltinBody:
     def look(self, point: Vec3) -> BodyReport:
         """Turn body and gaze to a point."""
         end, exact = self.stance.facing(point)
-        motion = partial(look_motion, self.stance, end, self._held())
+        motion = partial(look_motion, self.stance, end)
         self._move(self._stage.perform(end, motion, self.stance.held))
         if self.stance != end:
             return BodyReport(Outcome.CORRECTED, Code.CANCELLED, self.stance.gaze)
@@ -143,8 +142,7 @@ class BuiltinBody:
             return self._cancelled(start)
         facing, _ = self.stance.facing(target)
         holding = replace(facing, held=object_id)
-        thing = self._stage.thing(object_id)
-        motion = partial(pick_motion, self.stance, holding, target, thing)
+        motion = partial(pick_motion, self.stance, holding, target)
         self._move(self._stage.perform(holding, motion, object_id))
         if self.stance.held is None:
             return self._cancelled(start)
@@ -170,7 +168,7 @@ class BuiltinBody:
             return self._cancelled(start)
         facing, _ = self.stance.facing(spot.center)
         free = replace(facing, held=None)
-        motion = partial(drop_motion, self.stance, free, spot.center, self._held())
+        motion = partial(drop_motion, self.stance, free, spot.center)
         self._move(self._stage.perform(free, motion, held, spot.center))
         if self.stance.held is not None:
             return self._cancelled(start)
@@ -242,7 +240,7 @@ class BuiltinBody:
         before, end = path.points[-2], path.points[-1]
         heading = math.atan2(end.y - before.y, end.x - before.x)
         there = self.stance.walked(end, heading)
-        motion = partial(walk_motion, self.stance, path, there, self._held())
+        motion = partial(walk_motion, self.stance, path, there)
         self._move(self._stage.perform(there, motion, self.stance.held))
         return self.stance == there
 
@@ -255,9 +253,6 @@ class BuiltinBody:
         here = self.stance.position
         walked = here.horizontal_distance(start)
         return BodyReport(Outcome.CORRECTED, Code.CANCELLED, here, walked_m=walked)
-
-    def _held(self) -> Thing | None:
-        return self._stage.thing(self.stance.held)
 
     def _move(self, stance: Stance) -> None:
         """Take a new stance, and bring the held object to the hand."""

@@ -164,7 +164,7 @@ class Stage:
     def perform(
         self,
         end: Stance,
-        make: Callable[[], Motion],
+        make: Callable[[Thing | None], Motion],
         thing: int | None = None,
         rest: Vec3 | None = None,
     ) -> Stance:
@@ -172,7 +172,8 @@ class Stage:
 
         Args:
             end: The body when it is done.
-            make: Makes the motion to that end; costly, so it is asked only if it is watched.
+            make: Makes the motion to that end from the outline of the thing; both are costly, so
+                it is asked only if it is watched.
             thing: What is taken, put down or carried meanwhile.
             rest: Where it is put down.
 
@@ -181,7 +182,7 @@ class Stage:
         """
         if self.watcher is None:
             return end
-        motion = make()
+        motion = make(self.thing(thing))
         data = self._world.data
         kept = data.qpos.copy()
         moments = np.arange(0.0, motion.duration_s, 1.0 / self.moments_per_s)
