@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,9 @@ _TWIST_LEAST_RAD = np.radians(8.0)
 _TWIST_MOST_RAD = np.radians(120.0)
 _KNUCKLES = ("Index1", "Middle1", "Ring1", "Little1", "Fingers")
 _UP = np.array([0.0, 0.0, 1.0])
+_ARM = (("UpperArm", "LowerArm", "upper_arm", "forearm"), ("LowerArm", "Hand", "forearm", "hand"))
+_LEG = (("UpperLeg", "LowerLeg", "thigh", "shin"), ("LowerLeg", "Foot", "shin", "foot"))
+"""Bones of a limb, each with the one after it, our joint and the joint below that."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -184,6 +187,29 @@ def _stretched(turn: Array, direction: Array, along: float, across: float) -> Ar
     )
 
 
+def _swung(
+    at: Mapping[str, Array], side: tuple[str, str], limb: str, chain: Sequence[tuple[str, ...]]
+) -> Iterator[tuple[str, str, Array, Array, float]]:
+    """Turn the bones of a limb one after the other, until each lies along ours.
+
+    Args:
+        at: Where the bones of the file begin.
+        side: As the file's bones and as our joints are called.
+        limb: What it is, for people.
+        chain: Of each bone: itself, the one after it, our joint, and the joint below that.
+
+    Yields:
+        Bone, joint, the (3, 3) turn, the (3,) direction in the file, how much longer ours is.
+    """
+    left, letter = side
+    turn = np.eye(3)
+    for bone, after, joint, below in chain:
+        line, length = _between(at[left + bone], at[left + after], f"{left} {limb}")
+        ours = REST[INDEX[f"{below}_{letter}"]] - REST[INDEX[f"{joint}_{letter}"]]
+        turn = _swing(turn @ line, ours / np.linalg.norm(ours)) @ turn
+        yield bone, joint, turn, line, float(np.linalg.norm(ours)) / length
+
+
 def _fit_arm(
     at: Mapping[str, Array],
     scale: float,
@@ -193,17 +219,11 @@ def _fit_arm(
 ) -> None:
     """Turn an arm to hang as ours does in the rest pose, palm inwards."""
     left, letter = side
-    turn = np.eye(3)
-    chain = (("UpperArm", "LowerArm", "upper_arm"), ("LowerArm", "Hand", "forearm"))
     turns: dict[str, tuple[Array, Array, float]] = {}
-    for bone, after, joint in chain:
-        line, length = _between(at[left + bone], at[left + after], f"{left} arm")
-        below = {"upper_arm": "forearm", "forearm": "hand"}[joint]
-        ours = REST[INDEX[f"{below}_{letter}"]] - REST[INDEX[f"{joint}_{letter}"]]
-        along = float(np.linalg.norm(ours)) / length
-        turn = _swing(turn @ line, ours / np.linalg.norm(ours)) @ turn
+    for bone, _, turn, line, along in _swung(at, side, "arm", _ARM):
         turns[bone] = turn, line, along
         stretches[left + bone] = along / scale
+    turn = turns["LowerArm"][0]
     hand = at[left + "Hand"]
     knuckles = [at[left + name] for name in _KNUCKLES if left + name in at]
     ours = _knuckles([name for name in _KNUCKLES if left + name in at], letter)
@@ -306,14 +326,8 @@ def _fit_leg(
 ) -> None:
     """Straighten a leg as ours, and put its sole flat on the floor."""
     left, letter = side
-    turn = np.eye(3)
-    chain = (("UpperLeg", "LowerLeg", "thigh", "shin"), ("LowerLeg", "Foot", "shin", "foot"))
-    for bone, after, joint, below in chain:
-        line, length = _between(at[left + bone], at[left + after], f"{left} leg")
+    for bone, joint, turn, line, along in _swung(at, side, "leg", _LEG):
         begin = REST[INDEX[f"{joint}_{letter}"]]
-        ours = REST[INDEX[f"{below}_{letter}"]] - begin
-        along = float(np.linalg.norm(ours)) / length
-        turn = _swing(turn @ line, ours / np.linalg.norm(ours)) @ turn
         maps[left + bone] = _anchored(at[left + bone], _stretched(turn, line, along, scale), begin)
         stretches[left + bone] = along / scale
     ankle = at[left + "Foot"]
