@@ -8,11 +8,12 @@ records and nothing drawn ahead (`--no-frame-cache`), in studies of their own wi
 processes, in turn. From the first episode that begins to the last that ends; starting processes
 and building engines is in it, pages are not: they are made when somebody looks at them.
 `shares`: the same in one process, with a clock on the functions that do the work; what none of
-them explains is `rest`, and `overhead` is `store` and `rest`.
+them explains is `rest`, and `overhead` is `store` and `rest`; `building` makes a scene, once.
 `memory`: what one process gains over 500 further episodes.
 `waiting`: a model behind a loopback server that takes 6 s for each answer, 2 workers with 16
-episodes in flight each; `kept` is the rate of its calls against that of 32 such calls at once
-with nothing between them. Memory is that of all processes together, shared pages counted once.
+episodes in flight each, three after the other in each place; `kept` is the rate of its calls
+against that of 32 such calls at once with nothing between them: no picture, no diagnosis of the
+failure. Memory is that of all processes together, shared pages counted once.
 """
 
 from __future__ import annotations
@@ -39,6 +40,8 @@ MATRIX = ("--scene", "s1,s2", "--labeling", "sem,opaq")
 THINKING_S = 6.0
 CALLS = 12
 """Calls of an episode of the model that takes its time."""
+WAVES = 3
+"""Episodes of that model in turn, for each that is in flight."""
 WARM_UP, MORE = 60, 500
 TARGETS = {
     "episodes/h, 2 workers": ">= 8000",
@@ -134,13 +137,14 @@ def shares() -> dict[str, float]:
     from adamo_vh.runtime.builtin import BuiltinEngine
     from adamo_vh.runtime.builtin_body import BuiltinBody
     from adamo_vh.runtime.rendering import SceneRenderer
-    from adamo_vh.session import session
+    from adamo_vh.session import pooling, session
     from adamo_vh.study import playing
 
     episodes, clock = matrix(), Clock()
     with tempfile.TemporaryDirectory() as place:
         for _ in play_all(Path(place) / "warm", episodes[:: len(episodes) // 2]):
             pass
+        clock.watch("building", pooling, "create_engine")
         clock.watch("render", SceneRenderer, "draw", "color", "layers")
         clock.watch("perception", local.LocalActionServer, "_view")
         clock.watch("physics", BuiltinBody, "look", "walk", "pick", "drop", "rays", "see")
@@ -260,6 +264,7 @@ def waiting(workers: int = 2, in_flight: int = 16) -> dict[str, float]:
     with tempfile.TemporaryDirectory() as place, slow_mind() as model:
         flags = [*MATRIX, "--tasks", "T1,T2,T3,T4,T5,T6,T7,T8", "--model", model]
         flags += ["--set", "tool_calls=native", "--no-frame-cache", "--workers", str(workers)]
+        flags += ["--repetitions", str(WAVES)]
         flags += ["--in-flight", str(in_flight)]
         process = study(Path(place) / "study", *flags)
         while process.poll() is None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,13 +65,18 @@ class Vec3:
 
     def text(self, digits: int = 2, between: str = ", ") -> str:
         """The point in words: "(x, y, z)", with so many digits, and never "-0.00"."""
-        # Rounding first turns -0.001 into 0.00.
-        point = self.rounded(digits)
-        told = between.join(f"{value:.{digits}f}" for value in (point.x, point.y, point.z))
-        return f"({told})"
+        return _text(self, digits, between)
 
     def __str__(self) -> str:
         return self.text()
+
+
+@lru_cache(maxsize=4096)
+def _text(point: Vec3, digits: int, between: str) -> str:
+    """A point in words; most points of a room are told again in every turn."""
+    # Rounding first turns -0.001 into 0.00.
+    told = point.rounded(digits)
+    return f"({between.join(f'{value:.{digits}f}' for value in (told.x, told.y, told.z))})"
 
 
 @dataclass(frozen=True, slots=True)

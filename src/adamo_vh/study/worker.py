@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import os
 import threading
 import time
@@ -173,6 +175,7 @@ def work(pipe: Connection, setup: Setup) -> None:
     """
     # Several processes draw faster with one thread each; before anything loads OpenGL.
     os.environ.setdefault("LP_NUM_THREADS", "1")
+    _share_arenas()
     lock = threading.Lock()
 
     def send(message: Report | Alive) -> None:
@@ -201,3 +204,14 @@ def work(pipe: Connection, setup: Setup) -> None:
         os._exit(1)
     # Nothing is in flight any more; engines and connections go with the process.
     os._exit(0)
+
+
+def _share_arenas() -> None:
+    """Let all episodes take memory from the same two pools.
+
+    By default glibc gives a pool to every thread, and each keeps what one episode's long prompts
+    once took: with 16 episodes waiting for their model that was 230 MB more.
+    """
+    most_arenas = -8  # M_ARENA_MAX of malloc.h
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL("libc.so.6").mallopt(most_arenas, 2)

@@ -87,6 +87,8 @@ class ShortTermMemory:
         self._entries: list[Instruction | Exchange] = []
         self._view: Observation | None = None
         self._agent: AgentState | None = None
+        self._state: str | None = None
+        """The symbolic state as text, once it was asked for."""
 
     def instruct(self, text: str, view: Observation) -> None:
         """Remember an instruction and the view at that moment."""
@@ -96,7 +98,7 @@ class ShortTermMemory:
         else:
             self._pinned[1:] = [instruction]
             self._entries.append(instruction)
-        self._view, self._agent = view, view.agent
+        self._stand(view, view.agent)
 
     def remark(self, text: str) -> None:
         """Remember a word to the model that is no instruction."""
@@ -108,7 +110,11 @@ class ShortTermMemory:
         self._entries.append(Exchange(message, results))
         self._cut()
         for result in results:
-            self._view, self._agent = result.view or self._view, result.agent
+            self._stand(result.view or self._view, result.agent)
+
+    def _stand(self, view: Observation | None, agent: AgentState) -> None:
+        """Note what is seen and how the body stands now."""
+        self._view, self._agent, self._state = view, agent, None
 
     def _cut(self) -> None:
         """Forget the oldest steps until no more than `k` are left."""
@@ -135,7 +141,9 @@ class ShortTermMemory:
         """The whole symbolic state now; empty if the model is told none."""
         if self._view is None or self._agent is None or self._profile.state is StateText.NONE:
             return ""
-        return whole_state(self._view, self._agent, self._wording)
+        if self._state is None:
+            self._state = whole_state(self._view, self._agent, self._wording)
+        return self._state
 
     def messages(self) -> list[Message]:
         """The whole prompt, oldest first."""
