@@ -25,6 +25,7 @@ from adamo_vh.session.figures import (
     figure_glb,
     recorded_figure,
 )
+from adamo_vh.session.posing import joint_names
 from adamo_vh.session.runs import replay_episode, run_episode
 from adamo_vh.session.session import Session
 from adamo_vh.session.spare import engine_for
@@ -150,6 +151,9 @@ def test_a_figure_is_checked_drawn_and_exported(me):
     content = figure_glb(str(me))
     assert content[:4] == b"glTF"
     assert figure_glb(str(me)) == content
+    told = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
+    bones = [told["nodes"][node]["name"] for node in told["skins"][0]["joints"]]
+    assert tuple(bones) == joint_names()
 
 
 def test_a_conversation_keeps_the_figure_too(me, tmp_path):

@@ -151,10 +151,10 @@ class Posing:
 
 
 def joint_names() -> tuple[str, ...]:
-    """The joints of every figure, in the order of a pose."""
-    from adamo_vh.runtime.human.skeleton import JOINTS
+    """The joints of every figure as its GLB names them, in the order of a pose."""
+    from adamo_vh.runtime.human.bone_names import BONES
 
-    return JOINTS
+    return BONES
 
 
 def _rounded(values: Array | list[float]) -> _Numbers:

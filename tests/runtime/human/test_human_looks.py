@@ -244,6 +244,20 @@ def test_posing_writes_each_joint_by_name():
     np.testing.assert_array_equal(data.body("other").xpos, 0.0)
 
 
+AS_IN_VRM = [
+    *("hips", "spine", "chest", "neck", "head", "eyelids"),
+    *("leftShoulder", "leftUpperArm", "leftLowerArm", "leftHand"),
+    *("leftUpperLeg", "leftLowerLeg", "leftFoot", "leftToes"),
+    *("leftThumbMetacarpal", "leftThumbProximal", "leftThumbDistal"),
+    *(
+        f"left{finger}{part}"
+        for finger in ("Index", "Middle", "Ring", "Little")
+        for part in ("Proximal", "Intermediate", "Distal")
+    ),
+]
+"""Of the trunk and the left side, as the specification spells them; `eyelids` is ours."""
+
+
 def read_glb(path):
     raw = path.read_bytes()
     magic, version, total = struct.unpack_from("<4sII", raw)
@@ -266,7 +280,10 @@ def test_a_glb_holds_the_meshes_the_skeleton_and_the_clips(tmp_path, figure):
         names = mesh.get("extras", {}).get("targetNames", [])
         assert names == list(face.shapes.get(mesh["name"], {}))
         assert len(mesh["primitives"][0].get("targets", [])) == len(names)
-    assert [gltf["nodes"][n]["name"] for n in gltf["skins"][0]["joints"]] == list(JOINTS)
+    bones = [gltf["nodes"][n]["name"] for n in gltf["skins"][0]["joints"]]
+    assert len(set(bones)) == len(JOINTS)
+    assert [bone for bone in bones if not bone.startswith("right")] == AS_IN_VRM
+    assert {f"right{bone[4:]}" for bone in AS_IN_VRM if bone.startswith("left")} <= {*bones}
     assert [a["name"] for a in gltf["animations"]] == ["bend"]
     bends = {c["target"]["node"]: c for c in gltf["animations"][0]["channels"]}
     channel = gltf["skins"][0]["joints"][INDEX["forearm_l"]]
@@ -291,7 +308,7 @@ def test_a_glb_stands_upright_and_looks_along_z(tmp_path):
     turn = scene.graph.get("human")[0]
     x, y, z = (turn @ [*figure["eyes"].vertices.mean(axis=0), 1.0])[:3]
     assert abs(x) < 0.01 and y == pytest.approx(1.60, abs=0.02) and z > 0.05
-    x, y, z = (scene.graph.get("hand_l")[0] @ [0.0, 0.0, 0.0, 1.0])[:3]
+    x, y, z = (scene.graph.get("leftHand")[0] @ [0.0, 0.0, 0.0, 1.0])[:3]
     assert x > 0.5 and y == pytest.approx(REST[INDEX["hand_l"], 2])
 
 

@@ -45,7 +45,7 @@ export class Figure {
       const bone = byName.get(name);
       return bone ? [{ bone, own: bone.quaternion.clone(), more }] : [];
     });
-    this.feet = ["foot_l", "foot_r"].map((name) => byName.get(name)).filter((bone) => bone !== undefined);
+    this.feet = ["leftFoot", "rightFoot"].map((name) => byName.get(name)).filter((bone) => bone !== undefined);
     for (const mesh of this.meshes) {
       mesh.frustumCulled = false;
       mesh.castShadow = mesh.receiveShadow = true;

@@ -25,6 +25,7 @@ from adamo_vh.runtime.assets.glb_writing import (
     GlbWriter,
     add_material,
 )
+from adamo_vh.runtime.human.bone_names import BONES
 from adamo_vh.runtime.human.clips import Clip
 from adamo_vh.runtime.human.face import moving_face
 from adamo_vh.runtime.human.looks import Figure, Garment
@@ -48,7 +49,7 @@ def write_glb(path: Path, figure: Figure, clips: Iterable[Clip] = ()) -> None:
 def figure_glb(figure: Figure, clips: Iterable[Clip] = ()) -> bytes:
     """A figure with its motions; three.js and others play the clips by name.
 
-    The face has the morph targets of `face.SHAPES`.
+    Its bones are named as `BONES`, and the face has the morph targets of `face.SHAPES`.
 
     Args:
         figure: The looks.
@@ -79,7 +80,7 @@ def _add_skeleton(writer: GlbWriter) -> int:
     """Add the root node, one node for each joint, and the skin."""
     root = {"name": "human", "rotation": list(_BODY_TO_GLTF), "children": [joint_node(0)]}
     writer.add("nodes", root)
-    for j, (name, parent) in enumerate(zip(JOINTS, PARENTS, strict=True)):
+    for j, (name, parent) in enumerate(zip(BONES, PARENTS, strict=True)):
         shift = REST[j] - (REST[parent] if parent >= 0 else 0.0)
         node: dict[str, Any] = {"name": name, "translation": shift.tolist()}
         children = [joint_node(k) for k, p in enumerate(PARENTS) if p == j]

@@ -71,7 +71,7 @@ def bone_word(joint: str) -> tuple[str, str]:
 def bone_name(joint: str, style: str) -> str:
     """What a program calls a joint."""
     side, word = bone_word(joint)
-    if (finger := _FINGER.match(joint)) and style not in ("nothing", "adamo"):
+    if (finger := _FINGER.match(joint)) and style not in ("nothing", "adamo", "vrm"):
         name, number = finger.groups()
         word = f"{name}_0{number}" if style == "unreal" else f"{name.capitalize()}{number}"
     match style:
@@ -85,6 +85,8 @@ def bone_name(joint: str, style: str) -> str:
             return f"DEF-{_RIGIFY.get(word, word)}" + (f".{side[0].upper()}" if side else "")
         case "vroid":
             return f"J_Bip_{side[:1].upper() or 'C'}_{word[0].upper()}{word[1:]}"
+        case "vrm":
+            return f"{side}{word}" if side else word
         case "nothing":
             return f"node {INDEX[joint]}"
     return joint

@@ -61,7 +61,8 @@ RIGS = {
     "Rigify, eight influences": Rig("rigify", t_pose(), Z_UP, turned=True, split=2, **SMALL),
     "VRoid without the optional": Rig("vroid", t_pose(), without=ALL, turned=True, **SMALL),
     "left and right exchanged": Rig("unity", t_pose(), swap=True, turned=True, **SMALL),
-    "our own names": Rig("adamo", axes=Z_UP, **SMALL),
+    "our names within": Rig("adamo", axes=Z_UP, **SMALL),
+    "named as VRM 1.0, without its map": Rig("vrm", t_pose(), Y_UP, turned=True, **SMALL),
 }
 
 
@@ -128,6 +129,9 @@ def test_left_and_right_exchanged_is_told():
 def test_our_own_export_comes_back_as_it_was():
     ours = moving_face(load_figure("ken"))
     made = own_figure_of(figure_glb(load_figure("ken")), "ken.glb")
+    assert made.report.source == "names of bones (VRM)"
+    assert made.report.missing == {}
+    assert len(made.report.bones) == 52
     assert len(made.figure.garments) == len(ours.figure.garments)
     for one, other in zip(ours.figure.garments, made.figure.garments, strict=True):
         used = np.unique(one.faces)
@@ -181,6 +185,7 @@ def test_missing_bones_are_named_with_what_helps():
         ("thumb_02_l", "leftThumb2"),
         ("Hips", "hips"),
         ("upper_arm_l", "leftUpperArm"),
+        ("rightIndexIntermediate", "rightIndex2"),
     ],
 )
 def test_names_of_bones_are_understood(name, bone):

@@ -195,6 +195,12 @@ def _sort_out(found: dict[str, int], side: str) -> None:
         if side + "Foot" in found and side + "Toes" not in found:
             found[side + "Toes"] = found[side + "Foot"]
         found[side + "Foot"] = ankle
+    thumb = side + "Thumb"
+    if thumb + "0" in found and thumb + "2" not in found:
+        # As in VRM 1.0, whose thumb begins with its metacarpal.
+        for number in (1, 0):
+            if f"{thumb}{number}" in found:
+                found[f"{thumb}{number + 1}"] = found.pop(f"{thumb}{number}")
 
 
 def _rigify(found: dict[str, int], tree: Tree) -> None:

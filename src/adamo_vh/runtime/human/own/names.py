@@ -144,6 +144,7 @@ def dialect(names: tuple[str, ...]) -> str:
         ("upperarm_l", "Unreal"),
         ("upper_arm_l", "ADAMO"),
         ("LeftUpperArm", "Unity"),
+        ("leftUpperArm", "VRM"),
         ("LeftForeArm", "Mixamo's without prefix"),
     )
     return next((told for mark, told in marks if any(mark in name for name in names)), "")
