@@ -107,179 +107,265 @@ def place_tags(
         The placed tags in the order of the requests; those without a place are missing.
     """
     boxes = _table([request.anchor for request in requests if request.is_object], 4)
-    board = _Board(width_px, height_px, clutter, boxes, _table(marks, 2))
-    return tuple(placed for request in requests if (placed := board.place(request)))
+    fitting = [item for item in requests if item.size[0] <= width_px and item.size[1] <= height_px]
+    if not fitting:
+        return ()
+    board = _Board(width_px, height_px, fitting, clutter, boxes, _table(marks, 2))
+    return tuple(placed for number in range(len(fitting)) if (placed := board.place(number)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Places:
+    """(R, N): N places for the tag of each of R requests, and what they cost on an empty board."""
+
+    rects: Ints
+    """(4, R, N) left, top, right and bottom."""
+    standing: Floats
+    """What each costs for where it stands relative to the anchor."""
+    hidden: Floats
+    """What hiding objects costs."""
+    marks: Ints
+    """How many marks each covers."""
+    foreign: Floats
+    """What seeming to name other objects costs."""
+    least: Floats
+    """What each costs in all at least; infinite where it covers its anchor."""
 
 
 class _Board:
-    """The picture with the tags placed so far."""
+    """The picture with the tags placed so far.
+
+    Most of what a place costs does not depend on the tags that are placed before, so it is worked
+    out for all requests at once.
+    """
 
     def __init__(
-        self, width_px: int, height_px: int, clutter: Clutter, boxes: Ints, marks: Ints
+        self,
+        width_px: int,
+        height_px: int,
+        requests: Sequence[TagRequest],
+        clutter: Clutter,
+        boxes: Ints,
+        marks: Ints,
     ) -> None:
-        self.width_px = width_px
-        self.height_px = height_px
+        self.requests = requests
+        self.extent = np.array([width_px, height_px])
+        self.anchors = _table([request.anchor for request in requests], 4)
+        self.sizes = _table([request.size for request in requests], 2)
         self.clutter = clutter
         self.boxes = boxes
-        """(B, 4) boxes of all objects."""
-        self.others = boxes
-        """Those of all objects but the one whose tag is being placed."""
+        """(4, B) boxes of all objects."""
+        self.foreign = (boxes[:, :, None] != self.anchors[:, None]).any(axis=0)
+        """(B, R): whether a box is not what the request names."""
         self.marks = marks
-        """(M, 2) points to keep clear; leader lines add theirs."""
+        """(2, M) points to keep clear."""
+        self.lines: Ints = _table([], 2)
+        """(2, L) samples of leader lines, to keep clear as well."""
         self.taken: Ints = _table([], 4)
-        """(T, 4) rectangles of the tags placed so far."""
+        """(4, T) rectangles of the tags placed so far."""
+        self.rings: dict[int, _Places] = {}
+        """Places on the rings of each round that was needed."""
+        self.lattices: dict[tuple[int, int], Ints] = {}
+        """(4, N) free places for tags of a size, all over the picture."""
+        left, top = corner = self.anchors[:2] - self.sizes * np.array([[0], [1]])
+        inside = (top >= 0) & (left + self.sizes[0] <= width_px)
+        corner = np.minimum(np.maximum(corner, 0), self.extent[:, None] - self.sizes)
+        self.ideal = self._weighed(_rects(corner[..., None], self.sizes), slice(None))
+        """(R, 1): on top of each anchor, flush left."""
+        hiding = self.ideal.hidden + _MARK * self.ideal.marks + self.ideal.foreign
+        self.costless = inside & (hiding[:, 0] < _NOTHING_HIDDEN)
+        """(R,): whether that place costs nothing on an empty board."""
 
-    def place(self, request: TagRequest) -> PlacedTag | None:
+    def place(self, number: int) -> PlacedTag | None:
         """Take the best place for a request, if there is any."""
-        if request.size[0] > self.width_px or request.size[1] > self.height_px:
-            return None
-        self.others = self.boxes[(self.boxes != request.anchor).any(axis=1)]
-        rect = self._ideal(request)
+        request = self.requests[number]
+        rect = self._ideal(number)
         if rect is None:
-            rect = self._near(request)
+            rect = self._near(number)
         if rect is None:
-            rect = self._anywhere(request)
+            rect = self._anywhere(number)
         if rect is None:
             return None
-        self.taken = np.concatenate([self.taken, rect[None]])
+        self.taken = np.concatenate([self.taken, rect[:, None]], axis=1)
         leader = None
-        start, end = (ends[0] for ends in _leaders(rect[None], request.anchor))
+        start, end = _leaders(rect, request.anchor)
         if math.dist(start, end) > _slack(request):
             leader = (_pixel(start), _pixel(end))
-            samples = start + _LEADER_SAMPLES[:, None] * (end - start)
-            self.marks = np.concatenate([self.marks, samples.astype(np.int64)])
+            samples = start[:, None] + _LEADER_SAMPLES * (end - start)[:, None]
+            self.lines = np.concatenate([self.lines, samples.astype(np.int64)], axis=1)
         left, top, right, bottom = rect.tolist()
         return PlacedTag(request.tag, (left, top, right, bottom), leader)
 
-    def _ideal(self, request: TagRequest) -> Ints | None:
+    def _ideal(self, number: int) -> Ints | None:
         """The place on top of the anchor if it costs nothing: nothing can beat it."""
-        left, bottom = request.anchor[:2]
-        right, top = left + request.size[0], bottom - request.size[1]
-        if top < 0 or right > self.width_px:
+        if not self.costless[number]:
             return None
-        rects = _table([(left, top, right, bottom)], 4)
-        if self._free(rects).all() and self._hiding(rects)[0] < _NOTHING_HIDDEN:
-            return np.asarray(rects[0])
-        return None
+        rect = self.ideal.rects[:, number, 0]
+        hides = (
+            _overlap(rect[:, None], self.taken).any() or _contain(rect[:, None], self.lines).any()
+        )
+        return None if hides else rect
 
-    def _near(self, request: TagRequest) -> Ints | None:
+    def _near(self, number: int) -> Ints | None:
         """Search the rings around the anchor, from the inside out."""
         best: Ints | None = None
         best_cost = np.inf
-        for rings in _RINGS:
+        for count, rings in enumerate(_RINGS):
             # Farther rings cannot beat what costs less than getting there.
             if best_cost <= rings[0] ** _FAR:
                 break
-            rects = _ring_rects(request, rings, self.width_px, self.height_px)
-            rects = rects[self._free(rects, request.anchor)]
-            if len(rects):
-                costs = self._hiding(rects) + _standing(rects, request)
+            places = self._round(count)
+            which = (places.least[number] < best_cost + _NOTHING_HIDDEN).nonzero()[0]
+            which = which[self._free(places.rects[:, number, which])]
+            if len(which):
+                costs = self._hiding(places, number, which) + places.standing[number, which]
                 shortlist = costs.argsort(kind="stable")[:_SHORTLIST]
-                rects = rects[shortlist]
-                costs = costs[shortlist] + self._leading(rects, request)
+                rects = places.rects[:, number, which[shortlist]]
+                costs = costs[shortlist] + self._leading(rects, number)
                 winner = int(costs.argmin())
                 if costs[winner] < best_cost:
-                    best, best_cost = rects[winner], costs[winner]
+                    best, best_cost = rects[:, winner], costs[winner]
         return best
 
-    def _anywhere(self, request: TagRequest) -> Ints | None:
+    def _round(self, count: int) -> _Places:
+        """The places of all requests on the rings of a round."""
+        if count not in self.rings:
+            rects = _ring_rects(self.anchors, self.sizes, _RINGS[count], self.extent)
+            self.rings[count] = self._weighed(rects, slice(None))
+        return self.rings[count]
+
+    def _anywhere(self, number: int) -> Ints | None:
         """Search a lattice over the whole picture."""
-        width, height = request.size
-        xs, ys = _lattice(self.width_px, width, height), _lattice(self.height_px, height, height)
-        x, y = (axis.ravel() for axis in np.meshgrid(xs, ys))
-        rects = np.stack([x, y, x + width, y + height], axis=1)
-        rects = rects[self._free(rects)]
-        beside = rects[~_overlaps(rects, _table([request.anchor], 4))[:, 0]]
-        if len(beside):
-            costs = self._hiding(beside) + _standing(beside, request)
-            return np.asarray(beside[costs.argmin()])
-        if len(rects) and request.is_object:
-            return np.asarray(rects[self._hiding(rects).argmin()])
-        return None
+        request = self.requests[number]
+        rects = self.lattices.get(request.size)
+        if rects is None:
+            rects = _lattice_rects(request.size, self.extent)
+        # What is taken stays taken.
+        self.lattices[request.size] = rects = rects[:, self._free(rects)]
+        if not rects.size:
+            return None
+        places = self._weighed(rects[:, None], slice(number, number + 1))
+        hiding = self._hiding(places, 0, slice(None))
+        beside = np.isfinite(places.least[0])
+        if beside.any():
+            costs = np.where(beside, hiding + places.standing[0], np.inf)
+            return np.asarray(rects[:, costs.argmin()])
+        return np.asarray(rects[:, hiding.argmin()]) if request.is_object else None
 
-    def _free(self, rects: Ints, *anchor: PixelBox) -> NDArray[np.bool_]:
-        """Whether places overlap no placed tag, nor an anchor."""
-        solid = np.concatenate([self.taken, _table(anchor, 4)])
-        return np.asarray(~_overlaps(rects, solid).any(axis=1))
+    def _weighed(self, rects: Ints, numbers: slice) -> _Places:
+        """Weigh (4, R, N) places of some requests by all that is known before tags are placed."""
+        anchors, sizes = self.anchors[:, numbers, None], self.sizes[:, numbers, None]
+        touching = _overlap(rects + _TOUCHING[:, None, None], self.boxes[..., None, None])
+        touching &= self.foreign[:, numbers, None]
+        foreign = _FOREIGN * touching.sum(axis=0)
+        marks = _contain(rects, self.marks[..., None, None]).sum(axis=0)
+        hidden = _HIDING * self.clutter.hidden(rects.reshape(4, -1).T).reshape(marks.shape)
+        standing = _standing(rects, anchors, sizes)
+        least = hidden + _MARK * marks + foreign + standing
+        least[_overlap(rects, anchors)] = np.inf
+        return _Places(rects, standing, hidden, marks, foreign, least)
 
-    def _hiding(self, rects: Ints) -> Floats:
-        """What each place would hide or seem to name."""
-        foreign = _overlaps(rects + _TOUCHING, self.others).sum(axis=1)
-        marks = _contains(rects, self.marks).sum(axis=1)
-        hidden = self.clutter.hidden(rects)
-        return np.asarray(_HIDING * hidden + _MARK * marks + _FOREIGN * foreign)
+    def _free(self, rects: Ints) -> NDArray[np.bool_]:
+        """Whether places overlap no placed tag."""
+        return np.asarray(~_overlap(rects, self.taken[..., None]).any(axis=0))
 
-    def _leading(self, rects: Ints, request: TagRequest) -> Floats:
+    def _hiding(self, places: _Places, number: int, which: NDArray[np.intp] | slice) -> Floats:
+        """What some places of a request would hide or seem to name."""
+        rects = places.rects[:, number, which]
+        marks = places.marks[number, which] + _contain(rects, self.lines[..., None]).sum(axis=0)
+        hidden, foreign = places.hidden[number, which], places.foreign[number, which]
+        return np.asarray(hidden + _MARK * marks + foreign)
+
+    def _leading(self, rects: Ints, number: int) -> Floats:
         """What the leader line of each place costs."""
+        request = self.requests[number]
         start, end = _leaders(rects, request.anchor)
-        needed = np.hypot(*(end - start).T) > _slack(request)
+        needed = np.hypot(*(end - start)) > _slack(request)
         if not needed.any():
-            return np.zeros(len(rects))
-        lines = start[:, None] + _LEADER_SAMPLES[:, None] * (end - start)[:, None]
-        samples, shape = lines.reshape(-1, 2), lines.shape[:2]
-        below = _contains(self.taken, samples).reshape(len(self.taken), *shape)
-        through = _contains(self.others, samples).any(axis=0).reshape(shape)
+            return np.zeros(len(needed))
+        lines = start[..., None] + _LEADER_SAMPLES * (end - start)[..., None]
+        below = _contain(self.taken[..., None, None], lines)
+        others = self.boxes[:, self.foreign[:, number]]
+        through = _contain(others[..., None, None], lines).any(axis=0)
         crossed, inside = below.any(axis=2).sum(axis=0), through.sum(axis=1)
         return np.asarray(needed * (_LEADER + _CROSSED * crossed + _THROUGH * inside))
 
 
-def _ring_rects(request: TagRequest, rings: Floats, width_px: int, height_px: int) -> Ints:
-    """(N, 4) candidate places on rings around an anchor, moved into the picture."""
-    left, top, right, bottom = request.anchor
-    width, height = request.size
-    gaps = np.rint(rings * height)[:, None]
+def _ring_rects(anchors: Ints, sizes: Ints, rings: Floats, extent: Ints) -> Ints:
+    """(4, R, N) candidate places on rings around (4, R) anchors, moved into the picture."""
+    left, top, right, bottom = anchors[..., None, None]
+    width, height = sizes[..., None, None]
+    gaps = np.rint(rings[:, None] * height)
     # Each side offers even steps, and the two places that are flush with the anchor's ends.
     count = len(_ALONG) + 2
-    xs, ys = np.empty((2, len(rings), count))
-    xs[:, 0], xs[:, 1], ys[:, 0], ys[:, 1] = left, right - width, top, bottom - height
-    xs[:, 2:] = left - gaps - width + _ALONG * (right - left + width + 2 * gaps)
-    ys[:, 2:] = top - gaps - height + _ALONG * (bottom - top + height + 2 * gaps)
-    corners = np.empty((4, len(rings), count, 2))
-    corners[0, ..., 0], corners[0, ..., 1] = xs, top - gaps - height
-    corners[1, ..., 0], corners[1, ..., 1] = xs, bottom + gaps
-    corners[2, ..., 0], corners[2, ..., 1] = left - gaps - width, ys
-    corners[3, ..., 0], corners[3, ..., 1] = right + gaps, ys
-    room = np.array([width_px - width, height_px - height])
-    corner = np.rint(np.minimum(np.maximum(corners.reshape(-1, 2), 0), room)).astype(np.int64)
-    return np.concatenate([corner, corner + np.array(request.size)], axis=1)
+    xs, ys = np.empty((2, anchors.shape[1], len(rings), count))
+    xs[..., :1], xs[..., 1:2], ys[..., :1], ys[..., 1:2] = left, right - width, top, bottom - height
+    xs[..., 2:] = left - gaps - width + _ALONG * (right - left + width + 2 * gaps)
+    ys[..., 2:] = top - gaps - height + _ALONG * (bottom - top + height + 2 * gaps)
+    corners = np.empty((2, anchors.shape[1], 4, len(rings), count))
+    corners[0, :, 0], corners[1, :, 0] = xs, top - gaps - height
+    corners[0, :, 1], corners[1, :, 1] = xs, bottom + gaps
+    corners[0, :, 2], corners[1, :, 2] = left - gaps - width, ys
+    corners[0, :, 3], corners[1, :, 3] = right + gaps, ys
+    room = (extent[:, None] - sizes)[..., None]
+    corner = np.rint(np.minimum(np.maximum(corners.reshape(*sizes.shape, -1), 0), room))
+    return _rects(corner.astype(np.int64), sizes)
 
 
-def _standing(rects: Ints, request: TagRequest) -> Floats:
-    """What each place costs for where it stands relative to the anchor."""
-    low, high = np.array(request.anchor[:2]), np.array(request.anchor[2:])
-    size = np.array(request.size)
-    shared = np.minimum(rects[:, 2:], high) - np.maximum(rects[:, :2], low)
-    away = np.hypot(*np.maximum(-shared, 0).T) / size[1]
-    contact = (np.maximum(shared, 0) / np.minimum(size, high - low)).max(axis=1)
-    below = rects[:, 1] >= high[1]
-    shift = abs(rects[:, 0] - low[0]) / size[1]
-    cost = away**_FAR + _CORNER * (1.0 - contact) + _BELOW * below + _MISALIGNED * shift
+def _rects(corner: Ints, sizes: Ints) -> Ints:
+    """(4, R, N) places from (2, R, N) corners and (2, R) sizes."""
+    return np.concatenate([corner, corner + sizes[..., None]])
+
+
+def _lattice_rects(size: tuple[int, int], extent: Ints) -> Ints:
+    """(4, N) places for tags of a size, all over the picture."""
+    width, height = size
+    xs, ys = _lattice(int(extent[0]), width, height), _lattice(int(extent[1]), height, height)
+    x, y = (axis.ravel() for axis in np.meshgrid(xs, ys))
+    return np.stack([x, y, x + width, y + height])
+
+
+def _standing(rects: Ints, anchors: Ints, sizes: Ints) -> Floats:
+    """What each place costs for where it stands relative to its anchor."""
+    left, top, right, bottom = rects
+    low_x, low_y, high_x, high_y = anchors
+    width, height = sizes
+    shared_x = np.minimum(right, high_x) - np.maximum(left, low_x)
+    shared_y = np.minimum(bottom, high_y) - np.maximum(top, low_y)
+    away = np.hypot(np.maximum(-shared_x, 0), np.maximum(-shared_y, 0)) / height
+    contact = np.maximum(
+        np.maximum(shared_x, 0) / np.minimum(width, high_x - low_x),
+        np.maximum(shared_y, 0) / np.minimum(height, high_y - low_y),
+    )
+    shift = abs(left - low_x) / height
+    cost = away**_FAR + _CORNER * (1.0 - contact) + _BELOW * (top >= high_y) + _MISALIGNED * shift
     return np.asarray(cost)
 
 
-def _overlaps(rects: Ints, others: Ints) -> NDArray[np.bool_]:
-    """(N, M): whether each of (N, 4) rectangles overlaps each of (M, 4) others."""
-    left, top, right, bottom = rects.T[:, :, None]
-    other_left, other_top, other_right, other_bottom = others.T
+def _overlap(rects: Ints, others: Ints) -> NDArray[np.bool_]:
+    """Whether (4, ...) rectangles overlap others."""
+    left, top, right, bottom = rects
+    other_left, other_top, other_right, other_bottom = others
     return np.asarray(
         (left < other_right) & (other_left < right) & (top < other_bottom) & (other_top < bottom)
     )
 
 
-def _contains(rects: Ints, points: NDArray[np.number]) -> NDArray[np.bool_]:
-    """(N, P): whether each of (N, 4) rectangles holds each of (P, 2) points."""
-    left, top, right, bottom = rects.T[:, :, None]
-    u, v = points.T
+def _contain(rects: Ints, points: NDArray[np.number]) -> NDArray[np.bool_]:
+    """Whether (4, ...) rectangles hold (2, ...) points."""
+    left, top, right, bottom = rects
+    u, v = points
     return np.asarray((left <= u) & (u < right) & (top <= v) & (v < bottom))
 
 
 def _leaders(rects: Ints, anchor: PixelBox) -> tuple[Floats, Floats]:
-    """Lines from tags to their anchor: (N, 2) starts on the tags and ends on the anchor."""
-    near, far = np.array(anchor[:2]), np.array(anchor[2:]) - 1
-    middle = (rects[:, :2] + rects[:, 2:]) / 2
-    end = np.minimum(np.maximum(middle, near), far)
-    start = np.minimum(np.maximum(end, rects[:, :2]), rects[:, 2:] - 1)
-    return start, end
+    """Lines from (4, ...) tags to their anchor: (2, ...) starts on tags and ends on the anchor."""
+    left, top, right, bottom = rects
+    x = np.minimum(np.maximum((left + right) / 2, anchor[0]), anchor[2] - 1)
+    y = np.minimum(np.maximum((top + bottom) / 2, anchor[1]), anchor[3] - 1)
+    start_x = np.minimum(np.maximum(x, left), right - 1)
+    start_y = np.minimum(np.maximum(y, top), bottom - 1)
+    return np.array([start_x, start_y]), np.array([x, y])
 
 
 def _slack(request: TagRequest) -> float:
@@ -298,4 +384,5 @@ def _lattice(extent_px: int, size: int, height: int) -> Ints:
 
 
 def _table(rows: Sequence[Sequence[int]], columns: int) -> Ints:
-    return np.array(rows, dtype=np.int64).reshape(-1, columns)
+    """(columns, rows): each column in one piece of memory."""
+    return np.array(rows, dtype=np.int64).reshape(-1, columns).T.copy()
