@@ -2,6 +2,7 @@ import { Bone, Box3, BoxGeometry, BufferAttribute, type BufferGeometry, Color, M
 import { expect, test } from "vitest";
 import { Ambience } from "../src/view/ambience.ts";
 import { BodyLight } from "../src/view/bodylight.ts";
+import { coded } from "../src/view/coding.ts";
 import { Brightness } from "../src/view/brightness.ts";
 import { Plain } from "../src/view/plain.ts";
 import { Skin } from "../src/view/skin.ts";
@@ -35,7 +36,7 @@ test("the light on a body is the light of the room", () => {
   const light = brightness();
   const [x, y] = [-1.2, 1];
   const out = new Float32Array(3);
-  light.around(x, y, [1, 1]).put(0, 0, 1, 1.2, [1, 1, 1], out, 0);
+  light.around(x, y, [1, 1]).shade([x, y, 1.2], [0, 0, 1], 0, 1, [1, 1, 1].map(coded), out);
   const told = new Float32Array(6);
   light.at(new Vector3(x, y, 1.2), UP, false, told);
   const root = 127.5 * Math.sqrt(1.05 * (told[0] as number + (told[3] as number)));
@@ -103,15 +104,17 @@ function skinned(): SkinnedMesh {
 }
 
 test("a body is bent and shaped as the graphics card would do it", () => {
-  const mesh = skinned();
-  const skin = new Skin(mesh, new Plain(brightness()));
+  const meshes = [skinned(), skinned()];
+  const skin = new Skin(meshes, new Plain(brightness()));
   const light = new BodyLight([], [], () => 1);
-  for (const share of [0, 1]) {
-    mesh.morphTargetInfluences = [share];
+  expect(skin.shown.geometry.groups).toEqual([{ start: 0, count: 6, materialIndex: 0 }, { start: 6, count: 6, materialIndex: 1 }]);
+  expect(Array.from(skin.shown.geometry.getIndex()?.array ?? []).slice(6)).toEqual([4, 6, 5, 6, 7, 5]);
+  for (const shares of [[0, 0], [1, 0], [0, 1]]) {
+    meshes.forEach((mesh, n) => (mesh.morphTargetInfluences = [shares[n] as number]));
     skin.update(light);
     const places = skin.shown.geometry.getAttribute("position");
-    for (let i = 0; i < 4; i++) {
-      const wished = mesh.getVertexPosition(i, new Vector3());
+    for (let i = 0; i < 8; i++) {
+      const wished = (meshes[Math.floor(i / 4)] as SkinnedMesh).getVertexPosition(i % 4, new Vector3());
       expect(new Vector3().fromBufferAttribute(places, i).distanceTo(wished)).toBeLessThan(1e-5);
     }
   }
@@ -119,7 +122,7 @@ test("a body is bent and shaped as the graphics card would do it", () => {
 
 test("a body is worked out again only for another pose or another face", () => {
   const mesh = skinned();
-  const skin = new Skin(mesh, new Plain(brightness()));
+  const skin = new Skin([mesh], new Plain(brightness()));
   const light = new BodyLight([], [], () => 1);
   const versions = (): number => (skin.shown.geometry.getAttribute("position") as BufferAttribute).version;
   skin.update(light);

@@ -32,6 +32,7 @@ export function buildTimeline(show: Show): Timeline {
   slider.addEventListener("input", () => player.seek(track.start + (Number(slider.value) / 1000) * span()));
   const line = el("div", { class: "line" }, slider, marks);
   let marked = -1;
+  const shown = { value: -1, words: "" };
 
   const mark = (): void => {
     const key = track.events.length + Math.round(track.end * 4) * 1e5;
@@ -60,10 +61,15 @@ export function buildTimeline(show: Show): Timeline {
   const update = (): void => {
     mark();
     const value = Math.round((1000 * (player.time - track.start)) / span());
-    if (document.activeElement !== slider || player.playing || player.following) slider.value = String(value);
+    if (value !== shown.value && (document.activeElement !== slider || player.playing || player.following)) {
+      slider.value = String(value);
+      shown.value = value;
+    }
     const words = `${clock(player.time)} / ${clock(track.end)}`;
+    if (words === shown.words) return;
+    shown.words = words;
     write(time, words);
-    if (slider.getAttribute("aria-valuetext") !== words) slider.setAttribute("aria-valuetext", words);
+    slider.setAttribute("aria-valuetext", words);
   };
   const root = el("div", { class: "time", role: "group", attr: { "aria-label": "Time line" } }, back, play, on, line, time, now, speed);
   return { root, update };

@@ -111,19 +111,23 @@ export class Brightness {
 
   /** Light on a body that stands somewhere. */
   around(x: number, y: number, [lamps, sky]: readonly [lamps: number, sky: number]): BodyLight {
-    const chest = new Vector3(x, y, 1.2);
-    const [toLamp, toGlow] = [new Vector3(), new Vector3()];
-    const lamp = this.lamp(chest, toLamp, () => 1);
-    const glow = this.glow(chest, toGlow);
     return new BodyLight(
       this.sides.map(({ way, light }) => ({ way, light: light.clone().multiplyScalar(sky / Math.PI) })),
-      [
-        { way: toLamp, light: asVector(LAMP.colour, (lamp * lamps) / Math.PI) },
-        { way: toGlow, light: asVector(GLOW.colour, (glow * lamps) / Math.PI) },
-        { way: this.day, light: asVector(DAY.colour, (DAY.strength * lamps) / Math.PI) },
-      ],
+      this.raysAt(new Vector3(x, y, 1.2), lamps / Math.PI),
       (height) => this.open(x, y, height),
     );
+  }
+
+  /** Single lights as they come to a place, by a factor. */
+  private raysAt(place: Vector3, factor: number): readonly Ray[] {
+    const [toLamp, toGlow] = [new Vector3(), new Vector3()];
+    const lamp = this.lamp(place, toLamp, () => 1);
+    const glow = this.glow(place, toGlow);
+    return [
+      { way: toLamp, light: asVector(LAMP.colour, lamp * factor) },
+      { way: toGlow, light: asVector(GLOW.colour, glow * factor) },
+      { way: this.day, light: asVector(DAY.colour, DAY.strength * factor) },
+    ];
   }
 
   private open(x: number, y: number, z: number): number {

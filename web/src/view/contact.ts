@@ -1,7 +1,7 @@
 // Dark soft spots where feet and things touch what carries them: one draw call for all.
 
 import { BufferAttribute, BufferGeometry, DataTexture, DynamicDrawUsage, LinearFilter, Mesh, Quaternion, Vector3 } from "three";
-import type { SceneObject } from "../protocol.ts";
+import type { Placed, SceneObject } from "../protocol.ts";
 import type { Moment } from "../track/track.ts";
 import type { Figure } from "./figure.ts";
 import type { Plain } from "./plain.ts";
@@ -33,6 +33,8 @@ export class ContactShadows {
   isHers = true;
   private readonly places: BufferAttribute;
   private count = 0;
+  /** Of each thing, where it was last, and half of the upright box around it there. */
+  private readonly halves = new Map<number, { at: Placed; half: Vector3 }>();
 
   constructor(
     private readonly objects: readonly SceneObject[],
@@ -59,7 +61,7 @@ export class ContactShadows {
     for (const { id, size } of this.objects) {
       const at = moment.things.get(id);
       if (!at || moment.held === id || moment.gone.has(id)) continue;
-      const half = halfExtents(size, TURN.set(at[3], at[4], at[5], at[6]));
+      const half = this.half(id, size, at);
       this.put(at[0], at[1], at[2] - half.z, half.x * 3.1 + 0.015, half.y * 3.1 + 0.015);
     }
     const [x, y, heading] = moment.body;
@@ -69,12 +71,22 @@ export class ContactShadows {
     this.places.needsUpdate = true;
   }
 
+  private half(id: number, size: SceneObject["size"], at: Placed): Vector3 {
+    const known = this.halves.get(id);
+    if (known?.at === at) return known.half;
+    const half = halfExtents(size, TURN.set(at[3], at[4], at[5], at[6]));
+    this.halves.set(id, { at, half });
+    return half;
+  }
+
   private put(x: number, y: number, z: number, width: number, depth: number, heading = 0): void {
     const [cos, sin] = [Math.cos(heading), Math.sin(heading)];
-    CORNERS.forEach(([u, v], corner) => {
-      const [along, aside] = [u * width, v * depth];
-      this.places.setXYZ(this.count * 4 + corner, x + along * cos - aside * sin, y + along * sin + aside * cos, z + LIFT_M);
-    });
+    let corner = this.count * 4;
+    for (const [u, v] of CORNERS) {
+      const along = u * width;
+      const aside = v * depth;
+      this.places.setXYZ(corner++, x + along * cos - aside * sin, y + along * sin + aside * cos, z + LIFT_M);
+    }
     this.count++;
   }
 }

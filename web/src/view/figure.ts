@@ -1,7 +1,7 @@
 // The person: a skinned figure whose joints are set from the poses of the track.
 
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
-import { type Bone, Group, type Material, Matrix4, type Object3D, Quaternion, type SkinnedMesh, Vector3 } from "three";
+import { type Bone, Group, type Material, Matrix4, type Object3D, Quaternion, type Skeleton, type SkinnedMesh, Vector3 } from "three";
 import { Face } from "./face.ts";
 import { type Bearing, Life } from "./life.ts";
 import { bonesByName, nodesByName, skinnedIn } from "./loading.ts";
@@ -14,20 +14,25 @@ import type { Moment } from "../track/track.ts";
 const HEAD = ["head", "eyes", "lids", "brows", "lashes", "hair", "teeth", "tongue", "mouth"];
 /** From the head's joint to between the eyes, where the file does not say it. */
 const EYES = new Vector3(0.09, 0, 0.085);
+const turn = new Quaternion();
+const below = new Matrix4();
+const above = new Matrix4();
+const seen = new Vector3();
 
 export class Figure {
   readonly group = new Group();
   readonly meshes: SkinnedMesh[];
   readonly face: Face;
   /** The same body for the plain look. */
-  private readonly skins: Skin[];
+  private readonly skin: Skin;
   private isFull = false;
   private readonly life = new Life(() => this.isFull);
   /** Joints that her bearing turns, and how the motion has them. */
-  private readonly borne: { bone: Bone; own: Quaternion; more: Quaternion }[];
+  private readonly borne: { bone: Bone; joint: number; own: Quaternion; more: Quaternion }[];
   private readonly head: Bone | undefined;
   private readonly feet: Bone[];
   private readonly lids: number;
+  private readonly skeletons: ReadonlySet<Skeleton>;
 
   private constructor(
     private readonly root: Object3D,
@@ -36,6 +41,12 @@ export class Figure {
     byName: Map<string, Bone>,
     private readonly room: Room,
   ) {
+    // Nothing of it is drawn: it is turned here, once for each pose.
+    root.removeFromParent();
+    for (const bone of byName.values()) {
+      bone.updateMatrix();
+      bone.matrixAutoUpdate = false;
+    }
     this.meshes = skinnedIn(scene);
     this.face = new Face(this.meshes.filter((mesh) => mesh.morphTargetDictionary));
     this.lids = bones.indexOf(byName.get("eyelids"));
@@ -43,7 +54,7 @@ export class Figure {
     const { chest, neck, head } = this.life;
     this.borne = Object.entries({ chest, neck, head }).flatMap(([name, more]) => {
       const bone = byName.get(name);
-      return bone ? [{ bone, own: bone.quaternion.clone(), more }] : [];
+      return bone ? [{ bone, joint: bones.indexOf(bone), own: bone.quaternion.clone(), more }] : [];
     });
     this.feet = ["leftFoot", "rightFoot"].map((name) => byName.get(name)).filter((bone) => bone !== undefined);
     for (const mesh of this.meshes) {
@@ -52,9 +63,10 @@ export class Figure {
       const { name } = mesh.material as Material;
       if (["lids", "brows", "lashes", "eyes"].includes(name)) mesh.castShadow = false;
     }
-    this.skins = this.meshes.map((mesh) => new Skin(mesh, room.plain));
+    this.skeletons = new Set(this.meshes.map((mesh) => mesh.skeleton));
+    this.skin = new Skin(this.meshes, room.plain);
     for (const mesh of this.meshes) mesh.material = fullLook(surface(mesh.material as Material), room.ambience);
-    this.group.add(root, ...this.meshes, ...this.skins.map((skin) => skin.shown));
+    this.group.add(...this.meshes, this.skin.shown);
   }
 
   static of(gltf: GLTF, joints: readonly string[], room: Room): Figure {
@@ -67,16 +79,15 @@ export class Figure {
     const [x, y, heading] = moment.body;
     this.root.position.set(x, y, 0);
     this.root.quaternion.set(0, 0, Math.sin(heading / 2), Math.cos(heading / 2));
+    const q = moment.joints;
     this.bones.forEach((bone, i) => {
-      const q = moment.joints;
-      if (bone && i !== this.lids && q.length >= i * 4 + 4) {
-        bone.quaternion.set(q[i * 4] ?? 0, q[i * 4 + 1] ?? 0, q[i * 4 + 2] ?? 0, q[i * 4 + 3] ?? 1);
-      }
+      if (!bone || i === this.lids || q.length < i * 4 + 4) return;
+      if (i === 0) bone.position.set(...moment.pelvis);
+      bone.matrix.compose(bone.position, turn.fromArray(q, i * 4), bone.scale);
     });
     // The lids turn about the Y axis; the face has a shape for it that lies flush.
-    if (this.lids >= 0) this.face.turnLids(2 * Math.asin(moment.joints[this.lids * 4 + 1] ?? 0));
-    this.bones[0]?.position.set(...moment.pelvis);
-    for (const { bone, own } of this.borne) own.copy(bone.quaternion);
+    if (this.lids >= 0) this.face.turnLids(2 * Math.asin(q[this.lids * 4 + 1] ?? 0));
+    for (const { own, joint } of this.borne) if (joint >= 0 && q.length >= joint * 4 + 4) own.fromArray(q, joint * 4);
     this.bear();
   }
 
@@ -85,20 +96,20 @@ export class Figure {
    * @param viewer Where whoever looks on is, in the room.
    */
   live(seconds: number, bearing: Bearing, viewer: Vector3): boolean {
-    const below = this.borne[0]?.bone.parent;
-    if (!below) return false;
+    const base = this.borne[0]?.bone.parent;
+    if (!base) return false;
     // As the motion has trunk and head: what her bearing adds would lead it on.
-    const from = below.matrixWorld.clone();
-    for (const { bone, own } of this.borne) from.multiply(new Matrix4().compose(bone.position, own, bone.scale));
-    const moved = this.life.update(seconds, bearing, viewer.clone().applyMatrix4(from.invert()).sub(EYES));
+    below.copy(base.matrixWorld);
+    for (const { bone, own } of this.borne) below.multiply(above.compose(bone.position, own, bone.scale));
+    const moved = this.life.update(seconds, bearing, seen.copy(viewer).applyMatrix4(below.invert()).sub(EYES));
     if (moved) this.bear();
     return moved;
   }
 
   private bear(): void {
-    for (const { bone, own, more } of this.borne) bone.quaternion.copy(own).multiply(more);
-    this.group.updateMatrixWorld(true);
-    for (const skin of this.skins) skin.isStale = true;
+    for (const { bone, own, more } of this.borne) bone.matrix.compose(bone.position, turn.multiplyQuaternions(own, more), bone.scale);
+    this.root.updateMatrixWorld(true);
+    this.skin.isStale = true;
   }
 
   /** Give her the full look, or the plain one. */
@@ -111,16 +122,15 @@ export class Figure {
    * @param isWhole Whether her head is seen: whoever looks out of it does not see it.
    */
   prepare(isWhole: boolean): void {
-    const show = (mesh: Object3D, isWorn: boolean, { name }: Material): void => {
-      mesh.visible = isWorn && (isWhole || !HEAD.includes(name));
-    };
-    for (const mesh of this.meshes) show(mesh, this.isFull, mesh.material as Material);
-    for (const { shown } of this.skins) show(shown, !this.isFull, shown.material as Material);
+    const isSeen = ({ name }: Material): boolean => isWhole || !HEAD.includes(name);
+    for (const mesh of this.meshes) mesh.visible = this.isFull && isSeen(mesh.material as Material);
+    const { shown } = this.skin;
+    shown.visible = !this.isFull;
     if (this.isFull) return;
+    for (const material of shown.material) material.visible = isSeen(material);
     const { x, y } = this.root.position;
-    const light = this.room.plain.around(x, y);
-    for (const skeleton of new Set(this.meshes.map((mesh) => mesh.skeleton))) skeleton.update();
-    for (const skin of this.skins) if (skin.shown.visible) skin.update(light);
+    for (const skeleton of this.skeletons) skeleton.update();
+    this.skin.update(this.room.plain.around(x, y));
   }
 
   /** Where her eyes are and which way they look, in the room. */

@@ -59,27 +59,41 @@ export class Overlay {
   private readonly lines = document.createElementNS(SVG, "svg");
   private readonly labels: HTMLElement[] = [];
   private readonly bubble = el("div", { class: "bubble", attr: { hidden: "" } });
+  private readonly size = { w: 0, h: 0 };
+  private readonly bubbleSize = { w: 0, h: 0 };
+  private used = 0;
+  private said = "";
 
   constructor() {
     this.root.append(this.lines, this.bubble);
+    // To ask for a size lays the page out anew: it is asked when it changes, and not for each picture.
+    new ResizeObserver(() => {
+      [this.size.w, this.size.h] = [this.root.clientWidth, this.root.clientHeight];
+      this.measureBubble();
+    }).observe(this.root);
+  }
+
+  private measureBubble(): void {
+    [this.bubbleSize.w, this.bubbleSize.h] = [this.bubble.offsetWidth, this.bubble.offsetHeight];
   }
 
   private project(place: Vector3, camera: PerspectiveCamera): { x: number; y: number; far: number } | null {
     const at = place.clone().project(camera);
     if (at.z > 1 || at.z < -1 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1) return null;
-    const { clientWidth: w, clientHeight: h } = this.root;
+    const { w, h } = this.size;
     return { x: ((at.x + 1) / 2) * w, y: ((1 - at.y) / 2) * h, far: at.z };
   }
 
   /** Show labels, the bright ones first, then the near ones. */
   show(labels: readonly Label[], camera: PerspectiveCamera): void {
+    if (!labels.length && !this.used) return;
     const seen = labels
       .flatMap((label) => {
         const at = this.project(label.place, camera);
         return at ? [{ label, ...at, w: label.text.length * CHARACTER_PX + 16 }] : [];
       })
       .sort((a, b) => Number(b.label.bright) - Number(a.label.bright) || a.far - b.far);
-    const placed = layOut(seen, this.root.clientWidth, this.root.clientHeight);
+    const placed = layOut(seen, this.size.w, this.size.h);
     const lines: SVGLineElement[] = [];
     let used = 0;
     seen.forEach(({ label, x, y }, i) => {
@@ -96,7 +110,8 @@ export class Overlay {
       const below = spot.y > y;
       lines.push(this.line(x, y, spot.x + spot.w / 2, below ? spot.y : spot.y + spot.h));
     });
-    for (const node of this.labels.slice(used)) node.hidden = true;
+    for (const node of this.labels.slice(used, this.used)) node.hidden = true;
+    this.used = used;
     this.lines.replaceChildren(...lines);
   }
 
@@ -117,13 +132,17 @@ export class Overlay {
   speak(text: string, isQuestion: boolean, crown: Vector3, camera: PerspectiveCamera): void {
     const at = text ? crown.clone().project(camera) : null;
     const isBehind = !at || at.z > 1;
-    this.bubble.hidden = isBehind;
+    if (this.bubble.hidden !== isBehind) this.bubble.hidden = isBehind;
     if (isBehind) return;
-    write(this.bubble, text);
-    this.bubble.classList.toggle("question", isQuestion);
-    const { clientWidth: w, clientHeight: h } = this.root;
+    if (this.said !== text || !this.bubbleSize.w) {
+      this.said = text;
+      write(this.bubble, text);
+      this.bubble.classList.toggle("question", isQuestion);
+      this.measureBubble();
+    }
+    const { w, h } = this.size;
     const [x, y] = [((at.x + 1) / 2) * w, ((1 - at.y) / 2) * h];
-    const { offsetWidth: bw, offsetHeight: bh } = this.bubble;
+    const { w: bw, h: bh } = this.bubbleSize;
     const left = Math.min(Math.max(10, x - bw / 2), w - bw - 10);
     const top = Math.min(Math.max(54, y - bh - 18), h - bh - 14);
     this.bubble.style.transform = `translate(${Math.round(left)}px, ${Math.round(top)}px)`;

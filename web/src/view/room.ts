@@ -38,6 +38,9 @@ export class Room {
   private readonly looks: Looks[];
   /** Where things were when their light was worked out. */
   private readonly lit = new Map<Object3D, Matrix4>();
+  /** Where things were put last, and which were since their light was worked out. */
+  private readonly placed = new Map<number, Placed>();
+  private readonly moved = new Set<number>();
 
   private constructor(
     readonly scene: SceneShape,
@@ -62,7 +65,6 @@ export class Room {
       mesh.castShadow = ![...SHELL, ...SHADES].includes(name);
       // What stands before the walls is drawn before them.
       mesh.renderOrder = SHELL.includes(name) ? 1 : 0;
-      mesh.matrixAutoUpdate = false;
     }
     this.group.add(joined);
     for (const object of scene.objects) {
@@ -77,6 +79,9 @@ export class Room {
       this.things.set(object.id, node);
       this.group.add(node);
     }
+    this.group.traverse((object) => {
+      object.matrixAutoUpdate = false;
+    });
     this.looks = meshesIn(this.group).map((mesh) => this.look(mesh, surface(mesh.material as Material)));
   }
 
@@ -99,15 +104,16 @@ export class Room {
 
   /** Light things anew that were moved, for the plain look. */
   relight(): void {
+    if (!this.moved.size) return;
     for (const { mesh, own } of this.looks) {
-      const thing = this.things.get(mesh.userData.objectId as number);
-      if (!thing?.visible) continue;
+      const id = mesh.userData.objectId as number;
+      if (!this.moved.has(id) || !this.things.get(id)?.visible) continue;
       const before = this.lit.get(mesh);
-      thing.updateWorldMatrix(false, true);
       if (!before || isNear(before, mesh.matrixWorld)) continue;
       before.copy(mesh.matrixWorld);
       this.plain.light(mesh.geometry, own, mesh.matrixWorld, false);
     }
+    for (const id of this.moved) if (this.things.get(id)?.visible) this.moved.delete(id);
   }
 
   static of(gltf: GLTF, scene: SceneShape): Room {
@@ -119,9 +125,13 @@ export class Room {
 
   place(id: number, at: Placed): void {
     const thing = this.things.get(id);
-    if (!thing) return;
+    if (!thing || this.placed.get(id) === at) return;
+    this.placed.set(id, at);
+    this.moved.add(id);
     thing.position.set(at[0], at[1], at[2]);
     thing.quaternion.set(at[3], at[4], at[5], at[6]);
+    thing.updateMatrix();
+    thing.updateMatrixWorld(true);
   }
 }
 

@@ -59,6 +59,7 @@ export class Seeing {
   private readonly live = el("div", { class: "unseen", attr: { "aria-live": "polite" } });
   private readonly hint = el("div", { class: "hint", role: "status", attr: { hidden: "" } });
   private shownTime = -1;
+  private said = "";
   private hovered = 0;
 
   constructor(
@@ -147,8 +148,9 @@ export class Seeing {
     const { camera } = stage.cameras;
     this.overlay.show(this.labels(), camera);
     const said = this.spokenNow();
+    if (said !== this.said) write(this.live, said);
+    this.said = said;
     this.overlay.speak(stage.cameras.kind === "eyes" ? "" : said, isQuestion(said), stage.figure.crown(), camera);
-    write(this.live, said);
     if (!this.stats.hidden) write(this.stats, this.statsLine());
   }
 

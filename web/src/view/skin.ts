@@ -3,6 +3,7 @@
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, type MeshStandardMaterial, type Material, type SkinnedMesh } from "three";
 import type { BodyLight } from "./bodylight.ts";
+import { coded } from "./coding.ts";
 import type { Plain } from "./plain.ts";
 import { surface } from "./surfaces.ts";
 
@@ -12,10 +13,15 @@ interface Shape {
   by: Float32Array;
 }
 
-/** An attribute as plain numbers. */
-function numbers(geometry: BufferGeometry, name: string, size: number): Float32Array {
-  const own = geometry.getAttribute(name);
-  return Float32Array.from({ length: own.count * size }, (_, i) => own.getComponent(Math.floor(i / size), i % size));
+/** An attribute of all meshes, one after the other, as plain numbers. */
+function numbers(meshes: readonly SkinnedMesh[], name: string, size: number): Float32Array {
+  const own = meshes.map(({ geometry }) => geometry.getAttribute(name));
+  const out = new Float32Array(own.reduce((sum, { count }) => sum + count * size, 0));
+  let at = 0;
+  for (const attribute of own) {
+    for (let i = 0; i < attribute.count; i++) for (let k = 0; k < size; k++) out[at++] = attribute.getComponent(i, k);
+  }
+  return out;
 }
 
 function shapesOf(geometry: BufferGeometry): Shape[] {
@@ -32,44 +38,91 @@ function shapesOf(geometry: BufferGeometry): Shape[] {
   });
 }
 
+/** One of the meshes that the body consists of. */
+interface Part {
+  mesh: SkinnedMesh;
+  /** Its corners among those of the whole body. */
+  from: number;
+  to: number;
+  shapes: readonly Shape[];
+  /** Shares of the shapes that are taken on. */
+  mixed: Float32Array;
+  /** Roots of the colour of its surface, as they are kept for a corner. */
+  tint: readonly number[];
+}
+
+/** Which joints carry each corner, as places in the list of their matrices, and how much. */
+interface Carried {
+  /** Of each corner, where its joints begin; of the next one, where they end. */
+  begin: Uint32Array;
+  joint: Uint32Array;
+  weight: Float32Array;
+}
+
+function carriedOf(meshes: readonly SkinnedMesh[]): Carried {
+  const joints = numbers(meshes, "skinIndex", 4);
+  const shares = numbers(meshes, "skinWeight", 4);
+  const begin = new Uint32Array(shares.length / 4 + 1);
+  const joint = new Uint32Array(shares.length);
+  const weight = new Float32Array(shares.length);
+  let count = 0;
+  for (let i = 0; i < shares.length; i++) {
+    const share = shares[i] as number;
+    if (share !== 0) {
+      joint[count] = (joints[i] as number) * 16;
+      weight[count++] = share;
+    }
+    if (i % 4 === 3) begin[(i + 1) / 4] = count;
+  }
+  return { begin, joint, weight };
+}
+
 export class Skin {
-  readonly shown: Mesh;
+  /** All of the body: one shape, with a group for each material. */
+  readonly shown: Mesh<BufferGeometry, Material[]>;
   /** Whether the pose or the light is another one since it was shown last. */
   isStale = true;
+  private readonly parts: readonly Part[];
   private readonly places: BufferAttribute;
   private readonly light: BufferAttribute;
   private readonly rest: Float32Array;
   private readonly shaped: Float32Array;
   private readonly normals: Float32Array;
-  private readonly joints: Float32Array;
-  private readonly weights: Float32Array;
-  private readonly shapes: Shape[];
-  private readonly mixed: Float32Array;
-  private readonly tint: readonly number[];
+  /** The normals in this pose. */
+  private readonly ways: Float32Array;
+  private readonly carried: Carried;
 
-  constructor(
-    private readonly mesh: SkinnedMesh,
-    plain: Plain,
-  ) {
-    const { geometry } = mesh;
-    const own = surface(mesh.material as Material) as MeshStandardMaterial;
-    this.rest = numbers(geometry, "position", 3);
+  constructor(meshes: readonly SkinnedMesh[], plain: Plain) {
+    this.rest = numbers(meshes, "position", 3);
     this.shaped = this.rest.slice();
-    this.normals = numbers(geometry, "normal", 3);
-    this.joints = numbers(geometry, "skinIndex", 4);
-    this.weights = numbers(geometry, "skinWeight", 4);
-    this.shapes = shapesOf(geometry);
-    this.mixed = new Float32Array(this.shapes.length);
-    this.tint = "color" in own ? own.color.toArray() : [1, 1, 1];
+    this.normals = numbers(meshes, "normal", 3);
+    this.ways = this.normals.slice();
+    this.carried = carriedOf(meshes);
     const count = this.rest.length / 3;
     this.places = new BufferAttribute(new Float32Array(count * 3), 3).setUsage(DynamicDrawUsage);
     this.light = new BufferAttribute(new Uint8ClampedArray(count * 4).fill(255), 4, true).setUsage(DynamicDrawUsage);
-    const shown = new BufferGeometry();
-    shown.setAttribute("position", this.places);
-    shown.setAttribute("light", this.light);
-    shown.setAttribute("uv", geometry.getAttribute("uv"));
-    shown.setIndex(geometry.getIndex());
-    this.shown = new Mesh(shown, plain.look(own));
+    const shape = new BufferGeometry();
+    shape.setAttribute("position", this.places);
+    shape.setAttribute("light", this.light);
+    shape.setAttribute("uv", new BufferAttribute(numbers(meshes, "uv", 2), 2));
+    const corners: number[] = [];
+    const looks: Material[] = [];
+    let from = 0;
+    this.parts = meshes.map((mesh) => {
+      const own = surface(mesh.material as Material) as MeshStandardMaterial;
+      const { array } = mesh.geometry.getIndex() as BufferAttribute;
+      shape.addGroup(corners.length, array.length, looks.length);
+      looks.push(plain.look(own));
+      for (const corner of array) corners.push(from + corner);
+      const to = from + mesh.geometry.getAttribute("position").count;
+      const shapes = shapesOf(mesh.geometry);
+      const tint = "color" in own ? own.color.toArray() : [1, 1, 1];
+      const part = { mesh, from, to, shapes, mixed: new Float32Array(shapes.length), tint: tint.map(coded) };
+      from = to;
+      return part;
+    });
+    shape.setIndex(corners);
+    this.shown = new Mesh(shape, looks);
     this.shown.frustumCulled = false;
     // She stands before most of the room: what she hides need not be drawn.
     this.shown.renderOrder = -1;
@@ -77,57 +130,67 @@ export class Skin {
 
   /** Take on the pose of the skeleton and the shapes of the face, under this light. */
   update(light: BodyLight): void {
-    if (!this.shape() && !this.isStale) return;
+    let isOther = false;
+    for (const part of this.parts) {
+      if (!(this.shape(part) || this.isStale)) continue;
+      this.bend(part);
+      light.shade(this.places.array, this.ways, part.from, part.to, part.tint, this.light.array);
+      isOther = true;
+    }
     this.isStale = false;
-    const bones = this.mesh.skeleton.boneMatrices;
+    if (isOther) this.places.needsUpdate = this.light.needsUpdate = true;
+  }
+
+  private bend({ mesh, from, to }: Part): void {
+    const bones = mesh.skeleton.boneMatrices;
     if (!bones) return;
-    const { shaped, normals, joints, weights, tint } = this;
+    const { shaped, normals, ways } = this;
+    const { begin, joint, weight } = this.carried;
     const places = this.places.array;
-    const out = this.light.array;
     const bone = (at: number): number => bones[at] as number;
-    let [corner, at] = [0, 0];
-    for (; at < shaped.length; corner += 4, at += 3) {
+    for (let corner = from, at = from * 3; corner < to; corner++, at += 3) {
       const x = shaped[at] as number;
       const y = shaped[at + 1] as number;
       const z = shaped[at + 2] as number;
       const a = normals[at] as number;
       const b = normals[at + 1] as number;
       const c = normals[at + 2] as number;
+      const end = begin[corner + 1] as number;
       let px = 0, py = 0, pz = 0, nx = 0, ny = 0, nz = 0;
-      for (let n = corner; n < corner + 4; n++) {
-        const weight = weights[n] as number;
-        if (weight === 0) continue;
-        const m = (joints[n] as number) * 16;
-        const xx = bone(m) * weight, xy = bone(m + 4) * weight, xz = bone(m + 8) * weight;
-        const yx = bone(m + 1) * weight, yy = bone(m + 5) * weight, yz = bone(m + 9) * weight;
-        const zx = bone(m + 2) * weight, zy = bone(m + 6) * weight, zz = bone(m + 10) * weight;
-        px += xx * x + xy * y + xz * z + bone(m + 12) * weight;
-        py += yx * x + yy * y + yz * z + bone(m + 13) * weight;
-        pz += zx * x + zy * y + zz * z + bone(m + 14) * weight;
-        nx += xx * a + xy * b + xz * c;
-        ny += yx * a + yy * b + yz * c;
-        nz += zx * a + zy * b + zz * c;
+      for (let n = begin[corner] as number; n < end; n++) {
+        const share = weight[n] as number;
+        const m = joint[n] as number;
+        const xx = bone(m), xy = bone(m + 4), xz = bone(m + 8);
+        const yx = bone(m + 1), yy = bone(m + 5), yz = bone(m + 9);
+        const zx = bone(m + 2), zy = bone(m + 6), zz = bone(m + 10);
+        px += share * (xx * x + xy * y + xz * z + bone(m + 12));
+        py += share * (yx * x + yy * y + yz * z + bone(m + 13));
+        pz += share * (zx * x + zy * y + zz * z + bone(m + 14));
+        nx += share * (xx * a + xy * b + xz * c);
+        ny += share * (yx * a + yy * b + yz * c);
+        nz += share * (zx * a + zy * b + zz * c);
       }
       places[at] = px;
       places[at + 1] = py;
       places[at + 2] = pz;
-      light.put(nx, ny, nz, pz, tint, out, corner);
+      ways[at] = nx;
+      ways[at + 1] = ny;
+      ways[at + 2] = nz;
     }
-    this.places.needsUpdate = this.light.needsUpdate = true;
   }
 
   /** Take on the shapes of the face; returns whether they are others. */
-  private shape(): boolean {
-    const wished = this.mesh.morphTargetInfluences ?? [];
-    if (this.mixed.every((share, i) => share === Math.fround(wished[i] ?? 0))) return false;
-    this.mixed.set(wished);
-    this.shaped.set(this.rest);
-    this.shapes.forEach(({ corners, by }, i) => {
-      const share = this.mixed[i] ?? 0;
+  private shape({ mesh, from, to, shapes, mixed }: Part): boolean {
+    const wished = mesh.morphTargetInfluences ?? [];
+    if (mixed.every((share, i) => share === Math.fround(wished[i] ?? 0))) return false;
+    mixed.set(wished);
+    this.shaped.set(this.rest.subarray(from * 3, to * 3), from * 3);
+    shapes.forEach(({ corners, by }, i) => {
+      const share = mixed[i] ?? 0;
       if (share === 0) return;
       corners.forEach((corner, n) => {
         for (let k = 0; k < 3; k++) {
-          const at = corner * 3 + k;
+          const at = (from + corner) * 3 + k;
           this.shaped[at] = (this.shaped[at] as number) + share * (by[n * 3 + k] as number);
         }
       });
