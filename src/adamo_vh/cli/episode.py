@@ -68,8 +68,7 @@ def run_and_show(
         mark_latest(folder)
         if not as_json and (ahead := session.forecast()):
             _announce(ahead, config.budget)
-        session.say(config.instruction)
-        result = session.result()
+        result = session.play()
     if signer is not None:
         sign_run(folder, signer)
     show_result(result, folder, as_json=as_json)

@@ -86,13 +86,14 @@ def placed(wishes: Sequence[Wish], ground: Ground) -> tuple[Label, ...]:
         text = wish.text if len(wish.text) <= _LONGEST else f"{wish.text[: _LONGEST - 1]}…"
         half = _half(text, wish.size)
         spots, gaps = _spots(wish, half)
-        free = _is_inside(spots, half, ground) & _is_clear(spots, half, wish.size, taken)
-        if not free.any():
+        free = np.flatnonzero(
+            _is_inside(spots, half, ground) & _is_clear(spots, half, wish.size, taken)
+        )
+        if not len(free):
             continue
-        offsets = np.abs(spots[:, None] - busy)
-        covered = (offsets < half).all(axis=2).sum(axis=1)
-        away = np.hypot(*(spots - [wish.x, wish.y]).T)
-        best = int(np.where(free, away + 0.6 * wish.size * covered, np.inf).argmin())
+        away = np.hypot(*(spots[free] - [wish.x, wish.y]).T)
+        covered = _covered(spots[free], half, busy)
+        best = int(free[(away + 0.6 * wish.size * covered).argmin()])
         x, y = (round(float(value), 3) for value in spots[best])
         origin = (wish.x, wish.y) if gaps[best] - wish.away > wish.size else None
         labels.append(Label(text, wish.kind, x, y, wish.size, origin))
@@ -122,6 +123,15 @@ def _half(text: str, size: float) -> Array:
     return np.array([letters * size / 2, 0.55 * size])
 
 
+def _covered(spots: Array, half: Array, busy: Array) -> NDArray[np.int64]:
+    """How many busy points a label at each spot would cover."""
+    # Few are within reach of any.
+    reach = np.abs(busy - (spots.max(axis=0) + spots.min(axis=0)) / 2) - np.ptp(spots, axis=0) / 2
+    x, y = busy[(reach < half * 1.01).all(axis=1)].T
+    across = np.abs(spots[:, :1] - x) < half[0]
+    return np.asarray((across & (np.abs(spots[:, 1:] - y) < half[1])).sum(axis=1))
+
+
 def _is_inside(spots: Array, half: Array, ground: Ground) -> NDArray[np.bool_]:
     low, high = spots - half, spots + half
     corner, end = [ground.left, ground.top], [ground.right, ground.bottom]
@@ -132,5 +142,6 @@ def _is_clear(spots: Array, half: Array, size: float, taken: Array) -> NDArray[n
     """Whether a label at each spot keeps off all others."""
     gap = _GAP * np.maximum(taken[:, 4:], size) * [1.0, 0.5]
     reach = half + taken[:, 2:4] + gap
-    apart = np.abs(spots[:, None] - taken[:, :2]) >= reach
-    return np.asarray((apart[..., 0] | apart[..., 1]).all(axis=1), dtype=np.bool_)
+    apart = np.abs(spots[:, :1] - taken[:, 0]) >= reach[:, 0]
+    apart |= np.abs(spots[:, 1:] - taken[:, 1]) >= reach[:, 1]
+    return np.asarray(apart.all(axis=1), dtype=np.bool_)

@@ -133,8 +133,7 @@ class OutsideEpisode:
 
         def play() -> EpisodeResult:
             with session:
-                session.say(config.instruction)
-                return session.result()
+                return session.play()
 
         return cls(session.config, model, recall, play, done)
 

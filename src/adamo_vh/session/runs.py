@@ -89,8 +89,7 @@ def run_episode(
         observers=observers,
         frame_cache=frame_cache,
     ) as session:
-        session.say(config.instruction)
-        return session.result()
+        return session.play()
 
 
 def _config(
@@ -139,9 +138,7 @@ def resume_episode(
     if ended is not None and ended.reason.is_scored and (path / RESULT).exists():
         raise RecordError(f"{path} has ended ({ended.reason}); nothing is left to resume.")
     with Session.resume(path, budget=budget, page=page, **parts) as session:
-        if not session.trajectory.instructions:
-            session.say(session.config.instruction)
-        return session.result()
+        return session.result() if session.trajectory.instructions else session.play()
 
 
 def replay_episode(

@@ -290,6 +290,18 @@ class Session:
             try_page(self._paged)
         return ended
 
+    def play(self) -> EpisodeResult:
+        """Have the instruction carried out that the session was set up with, and score it.
+
+        The same as `say` and `result`, but that the page is drawn once.
+
+        Raises:
+            RecordError: It came out otherwise than recorded.
+            FileError: The record cannot be written any more; it can be gone on with later.
+        """
+        self._carry_out(self.config.instruction)
+        return self.result()
+
     def _carry_out(self, instruction: str) -> Ended:
         ended = self._agent.run(instruction)
         if self._writer is not None and self._writer.fault is not None:
@@ -349,10 +361,11 @@ class Session:
             RecordError: The last instruction has not ended.
         """
         again = f"adamo-vh run --resume {self.folder}"
-        result = told_result(self.manifest, self._trajectory, self.engine, self.folder, again)
-        if self._paged is not None:
-            try_page(self._paged)
-        return result
+        try:
+            return told_result(self.manifest, self._trajectory, self.engine, self.folder, again)
+        finally:
+            if self._paged is not None:
+                try_page(self._paged)
 
     def close(self) -> None:
         """Close what was opened; the session can be resumed from its folder."""

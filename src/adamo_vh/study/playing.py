@@ -47,8 +47,7 @@ def play(study: Path, planned: Planned, **parts: Unpack[Parts]) -> Outcome:
     if not _gone_on(study, folder, planned.key, parts):
         config = planned.config
         with Session.begin(config, folder, page=False, **parts) as session:
-            session.say(config.instruction)
-            session.result()
+            session.play()
     outcome = finished(study, planned)
     if outcome is None:
         raise FileError(

@@ -255,8 +255,7 @@ def _played(
         process_engines().lent(config) as world,
         Session.begin(config, folder, model=mind, engine=world) as session,
     ):
-        session.say(config.instruction)
-        result = session.result()
+        result = session.play()
     (told,) = recorded([folder])
     return result, chat(dialogue(told))
 
