@@ -23,18 +23,20 @@ from adamo_vh.geometry import Vec3
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.human.looks import load_figure
 from adamo_vh.runtime.scenes.glb import scene_glb
-from adamo_vh.service.app import serving
+from adamo_vh.service.app import MAX_BODY_BYTES, serving
 from adamo_vh.service.hosting import Host, Terms
+from adamo_vh.serving.admission import Rules
 from adamo_vh.session.builtin import read_scene
 from adamo_vh.session.figures import figure_glb
 from adamo_vh.session.posing import Posing
 from adamo_vh.studio.editing import Editor
-from adamo_vh.studio.face import Studio, studio_face
+from adamo_vh.studio.face import CONTENT_TYPES, Studio, studio_face
 from adamo_vh.studio.files import PAGE
 from adamo_vh.studio.library import Library
 from adamo_vh.studio.meshes import Meshes, Packed
 from adamo_vh.studio.offer import Offer
 from adamo_vh.studio.rooms import Rooms, RoomTerms
+from adamo_vh.studio.talk import Talk
 
 _MB = 1e6
 
@@ -100,17 +102,23 @@ def first_picture(url: str, label: str) -> None:
     urllib.request.urlopen(delete).close()
 
 
-def served(measure: Callable[[str], None], runs: Path | None = None) -> None:
-    """Measure at a studio on this machine, which shows some runs."""
+def served(
+    measure: Callable[[str], None],
+    runs: Path | None = None,
+    talk: Talk | None = None,
+    resolution: str = "640x360",
+) -> None:
+    """Measure at a studio on this machine, which shows some runs, and may hear and speak."""
     with tempfile.TemporaryDirectory() as folder:
         offer = Offer()
         out = Path(folder)
-        rooms = Rooms(out, offer, RoomTerms(resolution="640x360"))
-        studio = Studio(
-            offer, Library([runs or out]), rooms, Meshes(), Editor(out / "scenes", offer)
-        )
+        rooms = Rooms(out, offer, RoomTerms(resolution=resolution))
+        editor = Editor(out / "scenes", offer)
+        library = Library([runs or out])
+        studio = Studio(offer, library, rooms, Meshes(), editor, talk or Talk())
         host = Host(out / "served", Terms())
-        with serving(host, faces=(studio_face(studio),)) as url:
+        rules = Rules(MAX_BODY_BYTES, content_types=CONTENT_TYPES)
+        with serving(host, rules=rules, faces=(studio_face(studio),)) as url:
             measure(url)
         host.close_all()
 
