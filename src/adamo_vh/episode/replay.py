@@ -32,7 +32,7 @@ class ReplayReport:
     frames_differ: int
     """Frames with other bytes: possible on another machine, no error there."""
     cut: int = 0
-    """Actions that a person cut short: not executed, as nobody cuts again at the same moment."""
+    """Actions that a person cut short: the world goes to where they ended."""
 
 
 def replay(
@@ -49,7 +49,8 @@ def replay(
         world: Behind it; for what happened in it that its body did not do.
         recorded: What happened.
         start: Begin after this many steps, from the state that was saved there.
-        came: Is told of every event from there on, as soon as the world stands as after it.
+        came: Is told of every event from there on, as soon as the world stands as after it. Whoever
+            hears of them looks on as well: he is shown what was cut short, and may cut it again.
 
     Raises:
         RecordError: There is no such step.
@@ -72,9 +73,11 @@ def replay(
             # A further instruction begins where it stands; free play may have gone back before.
             server.load(event.saved)
         if isinstance(event, Acted | Happened | Restored):
-            is_cut = isinstance(event, Acted) and event.is_cut
-            cut += is_cut
-            digest, frame = _led_to(event, server, world, is_cut=is_cut)
+            if isinstance(event, Acted) and event.is_cut:
+                cut += 1
+                if came is not None:
+                    execute_call(server, event.name, event.arguments)
+            digest, frame = _led_to(event, server, world)
             if digest != event.state_hash:
                 what = event.name if isinstance(event, Acted) else event.type
                 mismatches.append(
@@ -92,13 +95,13 @@ def replay(
 
 
 def _led_to(
-    event: Acted | Happened | Restored, server: ActionServer, world: World, *, is_cut: bool
+    event: Acted | Happened | Restored, server: ActionServer, world: World
 ) -> tuple[str, Frame | None]:
     """Let an event come again; the digest of the world then, and the view that it brought."""
     if isinstance(event, Happened):
         world.apply(event.event)
         return world.state().hash(), None
-    if isinstance(event, Restored) or is_cut:
+    if isinstance(event, Restored) or event.is_cut:
         return server.load(event.saved), None
     result = execute_call(server, event.name, event.arguments)
     view = result.observation

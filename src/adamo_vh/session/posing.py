@@ -11,15 +11,19 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from adamo_vh.errors import ConfigError
+from adamo_vh.geometry import wrap_angle
 
 if TYPE_CHECKING:
     from adamo_vh.engine import World
     from adamo_vh.geometry import Array
+    from adamo_vh.observation import AgentState
     from adamo_vh.runtime.builtin import BuiltinEngine
 
 RATE_HZ = 30
 """How often an action is shown."""
 _DIGITS = 4
+_SAME = 1e-6
+"""Metres and radians that two bodies at the same moment of the same motion differ by at most."""
 _Numbers = tuple[float, ...]
 
 
@@ -100,6 +104,15 @@ class Posing:
             self._before_s += self._in_motion_s
         self._in_motion_s = seconds
         return self._moment()
+
+    def stands_as(self, agent: AgentState) -> bool:
+        """Whether the body of this moment stands, is turned and looks as an agent was told."""
+        body = self._engine.stage.shown(self._engine.body.stance).body
+        return (
+            body.position.distance(agent.position) < _SAME
+            and abs(wrap_angle(body.heading_rad - agent.heading_rad)) < _SAME
+            and body.gaze.distance(agent.gaze) < _SAME
+        )
 
     def close(self) -> None:
         """Look on no longer."""

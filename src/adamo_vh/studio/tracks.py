@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from adamo_vh.engine import BodyInfo, World, acting_body
 from adamo_vh.episode.result import Manifest, read_manifest
 from adamo_vh.errors import AdamoError
 from adamo_vh.record.run_folder import SCENE
-from adamo_vh.record.trajectory import Event, read_trajectory
+from adamo_vh.record.trajectory import Acted, Event, read_trajectory
 from adamo_vh.session.builtin import scene_title
 from adamo_vh.session.figures import recorded_figure
 from adamo_vh.session.posing import Posing
@@ -72,6 +73,8 @@ class _Making:
         self._telling = Telling(self._tell, href, None)
         self._came = 0
         """How many events have come again."""
+        self._cut: set[int] = set()
+        """Steps of the actions that were cut short again, where a person had done so."""
 
     def execute(self) -> None:
         """Tell all events: with poses as far as they can be executed again, and without after."""
@@ -82,7 +85,7 @@ class _Making:
         else:
             try:
                 report = replay_episode(self.folder, watch=self._watch)
-                if report.cut:
+                if report.cut > len(self._cut):
                     self._say("Where a person cut an action short, she jumps to where it ended.")
                 for mismatch in report.mismatches[:3]:
                     self._say(f"It came out otherwise than recorded: {mismatch}.")
@@ -98,14 +101,18 @@ class _Making:
     def _watch(self, world: World) -> Callable[[Event], None]:
         self.body = acting_body(world).info
         # Nothing is told twice of a second world: there is one for each track.
-        posing = Posing(world, self._moment)
+        posing = Posing(world, lambda: self._moment(posing))
         self._telling = Telling(self._tell, self._href, posing)
         self._telling.pose()
         return self._heard
 
-    def _moment(self) -> bool:
+    def _moment(self, posing: Posing) -> bool:
         self._telling.pose()
-        return True
+        act = next((e for e in islice(self.events, self._came, None) if isinstance(e, Acted)), None)
+        if act is None or not act.is_cut or not posing.stands_as(act.agent):
+            return True
+        self._cut.add(act.step)
+        return False
 
     def _heard(self, event: Event) -> None:
         # What came before the first instruction is not executed: its state holds it already.
