@@ -192,6 +192,18 @@ def test_what_is_said_meanwhile_takes_the_place_of_what_is_done(served, room):
         visitor.event("ended")
 
 
+def test_a_room_in_which_nothing_happened_leaves_no_run(served):
+    empty, used = served.room(scene="s1"), served.room(scene="s1")
+    folders = [folder_of(served, room) for room in (empty, used)]
+    with Visitor(served.url, used) as visitor:
+        visitor.ask("move", object_id=4, point=[0.2, 0.1, 0.8])
+        visitor.event("happened")
+    for room in (empty, used):
+        served.close(room)
+    assert [folder.exists() for folder in folders] == [False, True]
+    assert read_trajectory(folders[1]).events[0].type == "happened"
+
+
 def test_a_room_that_closes_tells_who_is_in_it(serve):
     served = serve(most=1)
     room = served.room(scene="s1")

@@ -7,6 +7,7 @@ once is done there (stop, speed, a word of consent), and all else waits for the 
 from __future__ import annotations
 
 import queue
+import shutil
 import threading
 import time
 from collections import deque
@@ -19,6 +20,7 @@ from adamo_vh.errors import ConfigError, EngineError, RecordError
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.players.outside import HUMAN
 from adamo_vh.observation import Frame
+from adamo_vh.record.run_folder import EVENTS
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Event, Started
 from adamo_vh.record.turn import Turn
@@ -210,7 +212,11 @@ class Room:
             self._telling.status()
             self.log.close()
             self._ready.set()
-            try_page(self.folder)
+            if _holds_events(self.folder):
+                try_page(self.folder)
+            else:
+                # Nobody said or moved anything: there is nothing to look at later.
+                shutil.rmtree(self.folder, ignore_errors=True)
 
     def _begun(self) -> Session:
         model = None if self._person is None else self._person.model
@@ -306,6 +312,12 @@ class Room:
 
     def _href(self, frame: str) -> str:
         return f"/studio/api/rooms/{self.name}/frames/{frame}"
+
+
+def _holds_events(folder: Path) -> bool:
+    """Whether anything is on record."""
+    events = folder / EVENTS
+    return events.is_file() and events.stat().st_size > 0
 
 
 def _try_result(session: Session) -> None:
