@@ -29,7 +29,10 @@ from adamo_vh.speech.sound import Sound
 from adamo_vh.studio.talk import Talk
 
 PAUSE_S, RATE_HZ = 0.5, 16_000
-SAID = ("Put the plate on the floor.", "Pick up the key.", "Put the cup on the floor.")
+SAID = (
+    "Please put the plate on the floor.",
+    "Pick up the flashlight and drop it next to the plant.",
+)
 _WAIT_S = 60.0
 
 
@@ -110,15 +113,21 @@ def _answered(url: str, room: str, sound: bytes) -> Answered:
         wire.send(json.dumps({"type": "say", "text": heard["text"]}))
         _until(wire, lambda told: told.get("doing") == "seeing")
         seeing_s = time.perf_counter() - began
-        thought = _until(wire, lambda told: told.get("event", {}).get("type") == "thought")
+        thought = _until(wire, lambda told: _is(told, "thought"))
         model_s = thought["event"]["turn"]["reply"]["seconds"]
-        _until(wire, lambda told: told["type"] == "pose")
+        moved = _until(wire, lambda told: told["type"] == "pose" or _is(told, "ended"))
+        if moved["type"] != "pose":
+            raise SystemExit(f"She heard {heard['text']!r}, and did nothing.")
         step_s = time.perf_counter() - began - model_s
-        ended = _until(wire, lambda told: told.get("event", {}).get("type") == "ended")
+        ended = _until(wire, lambda told: _is(told, "ended"))
         asked = time.perf_counter()
         said = _post(f"{url}/studio/api/speak", {"text": ended["event"]["answer"]})
         urllib.request.urlopen(url + said["sound"]).read()
         return Answered(text_s, seeing_s, step_s, model_s, time.perf_counter() - asked)
+
+
+def _is(told: dict[str, Any], kind: str) -> bool:
+    return bool(told["type"] == "event" and told["event"]["type"] == kind)
 
 
 def _until(wire: ClientConnection, meant: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:

@@ -52,6 +52,15 @@ def test_a_conversation_leads_to_a_done_task(served):
     assert replay_episode(folder).mismatches == ()
 
 
+def test_that_she_was_heard_is_told_before_anything_else(served, room):
+    with Visitor(served.url, room) as visitor:
+        visitor.doing("idle")
+        visitor.ask("say", text="Pick the plate")
+        first = visitor.next()
+        assert (first["type"], first["doing"]) == ("status", "seeing")
+        assert visitor.event("started")["instruction"] == "Pick the plate"
+
+
 def test_stop_cuts_the_action_at_the_moment_that_is_shown(served, room):
     with Visitor(served.url, room) as visitor:
         visitor.doing("idle")

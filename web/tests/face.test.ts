@@ -62,8 +62,11 @@ describe("a face", () => {
   it("shows that it listens", () => {
     const head = mesh("browInnerUp");
     const face = new Face([head], () => 1);
-    face.listen(true);
+    face.heeds = "listening";
     for (let i = 0; i < 10; i++) face.update(0.03);
     expect(head.morphTargetInfluences?.[0]).toBeGreaterThan(0.4);
+    face.heeds = "thinking";
+    for (let i = 0; i < 40; i++) face.update(0.03);
+    expect(head.morphTargetInfluences?.[0]).toBe(0);
   });
 });

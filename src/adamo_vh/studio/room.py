@@ -16,7 +16,7 @@ from pathlib import Path
 
 from adamo_vh.engine import ObjectMoved, acting_body
 from adamo_vh.episode.config import EpisodeConfig
-from adamo_vh.errors import ConfigError, EngineError, RecordError
+from adamo_vh.errors import AdamoError, ConfigError, EngineError, RecordError
 from adamo_vh.geometry import Vec3
 from adamo_vh.inference.players.outside import HUMAN
 from adamo_vh.observation import Frame
@@ -234,6 +234,7 @@ class Room:
         )
 
     def _go_on(self, session: Session) -> None:
+        self._look_ahead(session)
         while (wish := self._wishes.get()) is not None and not self._closing:
             match wish:
                 case Say(text=text):
@@ -241,11 +242,21 @@ class Room:
                 case Undo():
                     self._undo(session)
             self._between_steps()
+            self._look_ahead(session)
+
+    def _look_ahead(self, session: Session) -> None:
+        """Draw what she sees before it is needed: the engine keeps it, and she begins sooner."""
+        if self._wishes.empty() and not self._closing:
+            # Whatever is wrong with it is told when it is needed.
+            with suppress(AdamoError):
+                acting_body(session.engine).see(*self.config.resolution)
 
     def _say(self, session: Session, text: str) -> None:
         with self._lock:
             self._cut.clear()
             self._busy = True
+        self._telling.doing = "seeing"
+        self._telling.status()
         try:
             ended = session.say(text)
             session.result()

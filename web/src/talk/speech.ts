@@ -26,14 +26,22 @@ export function buildSpeech(show: Show, face: () => Face | null): Speech {
   let told = show.story.items.length;
 
   const press = (which: HTMLButtonElement, on: boolean): void => which.setAttribute("aria-pressed", String(on));
+  const heed = (what: Face["heeds"]): void => {
+    const hers = face();
+    if (hers) hers.heeds = what;
+  };
   const deafen = (): void => {
     microphone?.close();
     microphone = null;
-    face()?.listen(false);
+    heed(null);
     press(listen, false);
   };
+  const done = (): void => {
+    // He may have gone on to speak meanwhile.
+    if (face()?.heeds === "thinking") heed(null);
+  };
   const heard = (text: string): void => {
-    face()?.listen(false);
+    done();
     if (!text) return;
     if (STOPS.test(text)) show.say({ type: "stop" });
     else if (show.say({ type: "say", text })) show.player.catchUp();
@@ -43,11 +51,14 @@ export function buildSpeech(show: Show, face: () => Face | null): Speech {
       microphone = await Microphone.open({
         began: () => {
           voice.stop();
-          face()?.listen(true);
+          heed("listening");
         },
-        ended: () => undefined,
+        ended: () => heed("thinking"),
         heard,
-        failed: (why) => show.tellUser(why, "error"),
+        failed: (why) => {
+          done();
+          show.tellUser(why, "error");
+        },
       });
       press(listen, true);
     } catch {

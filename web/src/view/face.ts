@@ -41,7 +41,8 @@ export class Face {
   private readonly now = new Map<string, number>();
   private phonemes: readonly Phoneme[] = [];
   private clock: (() => number) | null = null;
-  private listening = false;
+  /** What she gives to him who speaks to her: her ear, and then a thought to what he said. */
+  heeds: "listening" | "thinking" | null = null;
   private lids = 0;
   private shut = 0;
   private blinkAt: number;
@@ -65,15 +66,6 @@ export class Face {
     this.clock = null;
   }
 
-  /** Somebody speaks to her. */
-  listen(on: boolean): void {
-    this.listening = on;
-  }
-
-  get isListening(): boolean {
-    return this.listening;
-  }
-
   /** The joint of the eyelids is turned so far, radians: shown by the lids' own shape. */
   turnLids(angle: number): void {
     this.lids = Math.min(1, Math.max(0, angle / LIDS_CLOSED));
@@ -82,7 +74,7 @@ export class Face {
   /** Go on; returns whether anything moved. */
   update(seconds: number): boolean {
     this.time += seconds;
-    const wished: Record<string, number> = { ...(this.listening ? LISTENING : {}) };
+    const wished: Record<string, number> = { ...(this.heeds === "listening" ? LISTENING : {}) };
     if (this.clock) Object.assign(wished, shapesAt(this.phonemes, this.clock()));
     const share = 1 - Math.exp(-EASE * seconds);
     let moved = false;

@@ -224,7 +224,7 @@ export class Stage {
   /** How she bears herself: what looks out of her eyes goes with the motion alone. */
   private bearing(): Bearing {
     if (this.cameras.kind === "eyes") return "busy";
-    return this.figure.face.isListening ? "listening" : this.attends();
+    return this.figure.face.heeds ?? this.attends();
   }
 
   private afterFirst(): void {
