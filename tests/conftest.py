@@ -75,6 +75,16 @@ def s1_engine() -> Iterator[BuiltinEngine]:
     made.close()
 
 
+@pytest.fixture(scope="session")
+def s2_engine() -> Iterator[BuiltinEngine]:
+    """One engine of scene S2 for all tests of a worker; reset it before use."""
+    from adamo_vh.runtime.builtin import BuiltinEngine
+
+    made = BuiltinEngine("s2")
+    yield made
+    made.close()
+
+
 @pytest.fixture
 def engine(s1_engine: BuiltinEngine) -> BuiltinEngine:
     """Scene S1, just reset."""

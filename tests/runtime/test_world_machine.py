@@ -209,7 +209,7 @@ SHARED = settings(
 # Failures are not shrunk, which takes minutes: the examples are short and always the same.
 QUICK = settings(
     SHARED,
-    max_examples=6,
+    max_examples=3,
     stateful_step_count=20,
     derandomize=True,
     database=None,

@@ -24,7 +24,7 @@ from adamo_vh.record.termination import Limits, TerminationReason
 from adamo_vh.record.trajectory import Observed, read_trajectory
 from adamo_vh.runtime.builtin import BuiltinEngine
 
-SMALL = (480, 270)
+SMALL = (320, 180)
 PLATE_TO_FLOOR = [
     {"note": "Look for open floor.", "tool": "Look", "args": {"x": -1.5, "y": -2.5, "z": 0}},
     {"note": "Take the plate.", "tool": "Pick", "args": {"object": "Plate_57"}},
@@ -160,7 +160,7 @@ def test_wrong_settings_start_nothing(settings: dict[str, Any], part: str) -> No
     assert part in str(caught.value)
 
 
-def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
+def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path, engine: BuiltinEngine) -> None:
     """kill -9 in the middle: what was recorded reads back and replays to the same hashes."""
     steps = [{"tool": "Look", "args": {"x": 0.1 * (i % 9), "y": -1.0, "z": 0.8}} for i in range(12)]
     script = tmp_path / "long.json"
@@ -182,10 +182,12 @@ def test_a_kill_loses_only_the_step_in_flight(tmp_path: Path) -> None:
     process.wait()
     assert len(read_trajectory(folder).acts) >= 4
     assert read_result(folder) is None
-    assert adamo_vh.replay_episode(folder).mismatches == ()
-    resumed = adamo_vh.resume_episode(folder)
+    assert adamo_vh.replay_episode(folder, engine=engine).mismatches == ()
+    resumed = adamo_vh.resume_episode(folder, engine=engine)
     assert resumed.steps == 12
-    straight = adamo_vh.run_episode("Look around", model=f"scripted:{script}", resolution=(160, 90))
+    straight = adamo_vh.run_episode(
+        "Look around", model=f"scripted:{script}", resolution=(160, 90), engine=engine
+    )
     assert resumed.state_hash == straight.state_hash
     assert [act.step for act in read_trajectory(folder).acts] == list(range(1, 13))
     assert adamo_vh.replay_episode(folder).mismatches == ()

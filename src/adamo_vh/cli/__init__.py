@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
+from functools import cache
+from typing import Any
 
 from adamo_vh.errors import (
     AdamoError,
@@ -36,7 +39,6 @@ def main() -> None:
 def _run() -> int:
     from typer import TyperException
 
-    from adamo_vh.cli.app import app
     from adamo_vh.cli.exits import Exit
     from adamo_vh.cli.terminal import complain, is_text
     from adamo_vh.files import cannot
@@ -48,11 +50,7 @@ def _run() -> int:
                     f"{os.fsencode(words).decode('utf-8', 'replace')!r} is not UTF-8 text: set "
                     "the terminal to UTF-8 (export LC_ALL=C.UTF-8), and type it again."
                 )
-        if sys.flags.optimize > 1:
-            from adamo_vh.cli.kept_help import keep_help
-
-            keep_help(app)
-        code = app(standalone_mode=False)
+        code = _command()(standalone_mode=False)
         if code == Exit.STOPPED:
             complain("stopped; what happened so far is in the run folder")
         return code if isinstance(code, int) else Exit.DONE
@@ -77,6 +75,20 @@ def _run() -> int:
             f"{TRACEBACK}=1 shows where it came from."
         )
         return Exit.FAULT
+
+
+@cache
+def _command() -> Callable[..., Any]:
+    """The tree of commands: to make it takes longer than many a command."""
+    from typer.main import get_command
+
+    from adamo_vh.cli.app import app
+
+    if sys.flags.optimize > 1:
+        from adamo_vh.cli.kept_help import keep_help
+
+        keep_help(app)
+    return get_command(app)
 
 
 def _usage(error: Exception) -> str:

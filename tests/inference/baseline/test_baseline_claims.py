@@ -9,6 +9,7 @@ import pytest
 from benchmarks import everyday
 from benchmarks.claims import Case, cases, judged, played
 from benchmarks.judging import Outcome, false_claims, holds
+from tests.spread import spread
 
 import adamo_vh
 from adamo_vh.inference.baseline import BaselineModel
@@ -35,7 +36,7 @@ def _play(world, text: str, resolution: tuple[int, int]) -> Outcome:
 
 def test_generated_instructions_get_no_false_claim(world):
     scene, engine = world
-    made = cases(random.Random(11), 6, [scene], ["sem", "opaq"], ["paper", "lean"])
+    made = cases(random.Random(11), 3, [scene], ["sem", "opaq"], ["paper", "lean"])
     for case in made:
         _, false = judged(case, played(case, engine, "baseline", _SMALL))
         assert not false, case
@@ -53,7 +54,7 @@ def test_many_generated_instructions(world, labeling):
     assert done >= (0.85 if labeling == "sem" else 0.5) * possible
 
 
-@pytest.mark.parametrize("line", _SAMPLE)
+@pytest.mark.parametrize("line", spread(_SAMPLE, 2))
 def test_everyday_instructions(world, line):
     _everyday(world, line)
 

@@ -15,6 +15,8 @@ from adamo_vh.inference.model import Reply, Sampling
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.session.runs import run_episode
 
+SMALL = (640, 360)
+"""For what is told by names alone; looks need more pixels."""
 PROMPT = {task.id: task.prompt for task in TASKS}
 SEM = [f"T{n}" for n in range(1, 14)]
 
@@ -40,7 +42,9 @@ class Reworded(BaselineModel):
 
 @pytest.mark.parametrize("task", SEM)
 def test_semantic_tags(engine, task):
-    result = run_episode(task=task, model="baseline", labeling="sem", engine=engine)
+    result = run_episode(
+        task=task, model="baseline", labeling="sem", engine=engine, resolution=SMALL
+    )
     assert (result.completion, result.strict) == (1.0, 1.0), result.answer
     assert result.missing_notes == 0
 
@@ -61,14 +65,16 @@ def test_opaque_tags(engine, task):
 
 @pytest.mark.parametrize("k", [1, 4])
 def test_a_short_memory(engine, k):
-    result = run_episode(task="T12", model="baseline", labeling="sem", k=k, engine=engine)
+    result = run_episode(
+        task="T12", model="baseline", labeling="sem", k=k, engine=engine, resolution=SMALL
+    )
     assert result.completion == 1.0
 
 
 @pytest.mark.parametrize("task", ["T1", "T3", "T4", "T7", "T8", "T10", "T12"])
 def test_rewordings_are_played_to_the_same_end(engine, task):
     player = Reworded(PROMPT[task], REWORDINGS[task][-1])
-    result = run_episode(task=task, model=player, labeling="sem", engine=engine)
+    result = run_episode(task=task, model=player, labeling="sem", engine=engine, resolution=SMALL)
     assert result.completion == 1.0, result.answer
 
 
