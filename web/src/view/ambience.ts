@@ -94,10 +94,14 @@ export class Ambience {
     const u = clamp((x - box.min.x) / CELL_M - 0.5, nx);
     const v = clamp((y - box.min.y) / CELL_M - 0.5, ny);
     const w = clamp((z - box.min.z) / CELL_M - 0.5, nz);
-    const [i, j, k] = [Math.floor(u), Math.floor(v), Math.floor(w)];
+    const i = Math.floor(u);
+    const j = Math.floor(v);
+    const k = Math.floor(w);
     let sum = 0;
     for (let corner = 0; corner < 8; corner++) {
-      const [a, b, c] = [corner & 1, (corner >> 1) & 1, corner >> 2];
+      const a = corner & 1;
+      const b = (corner >> 1) & 1;
+      const c = corner >> 2;
       const share = (a ? u - i : 1 - u + i) * (b ? v - j : 1 - v + j) * (c ? w - k : 1 - w + k);
       if (share > 0) sum += share * this.of(i + a, j + b, k + c);
     }

@@ -17,6 +17,8 @@ const SKY_SHARE = 1.55;
 /** The lamp is as wide as this to each side, so that shadows have soft edges. */
 const LAMP_HALF_M = 0.22;
 const LAMP_SPOTS = [[-1, -0.4], [0.4, -1], [1, 0.4], [-0.4, 1]].map(([x = 0, y = 0]) => new Vector3(x, y, 0).multiplyScalar(LAMP_HALF_M));
+/** So near the lamp nothing is in the way. */
+const LAMP_OWN_M = 0.3;
 /** Cosines between which the lamp fades out. */
 const [OUTER, INNER] = [Math.cos(LAMP.angle), Math.cos(LAMP.angle * (1 - LAMP.penumbra))];
 
@@ -74,7 +76,7 @@ export class Brightness {
   private readonly down: Vector3;
   private readonly day: Vector3;
   private readonly way = new Vector3();
-  private readonly spot = new Vector3();
+  private readonly spots: readonly Vector3[];
 
   constructor(
     scene: Extent,
@@ -84,6 +86,7 @@ export class Brightness {
   ) {
     this.sources = sourcesOf(scene, window);
     this.sides = sidesOf(this.sources);
+    this.spots = LAMP_SPOTS.map((spot) => spot.clone().add(this.sources.lamp));
     this.down = this.sources.middle.clone().sub(this.sources.lamp).normalize();
     this.day = this.sources.day.clone().sub(this.sources.middle.clone().setZ(0.9)).normalize();
   }
@@ -94,19 +97,27 @@ export class Brightness {
    * @param out Red, green and blue from the lights, then from all surroundings.
    */
   at(place: Vector3, outwards: Vector3, isShaded: boolean, out: Float32Array): void {
-    out.fill(0);
     const { way } = this;
-    const lamp = this.lamp(place, way, (to) => Math.max(0, outwards.dot(to)));
-    if (lamp > 0) add(out, 0, LAMP.colour, lamp * (isShaded ? this.lit(place, outwards) : 1));
-    add(out, 0, DAY.colour, DAY.strength * Math.max(0, outwards.dot(this.day)));
-    add(out, 0, GLOW.colour, this.glow(place, way) * Math.max(0, outwards.dot(way)));
+    const open = this.open(place.x + outwards.x * 0.11, place.y + outwards.y * 0.11, place.z + outwards.z * 0.11);
+    const direct = (1 + (open - 1) * DIRECT_SHARE) / Math.PI;
+    let lamp = this.lamp(place, way);
+    if (lamp > 0) lamp *= Math.max(0, outwards.dot(way));
+    if (lamp > 0 && isShaded) lamp *= this.lit(place, outwards);
+    const day = DAY.strength * Math.max(0, outwards.dot(this.day));
+    const glow = this.glow(place, way) * Math.max(0, outwards.dot(way));
+    out[0] = direct * (lamp * LAMP.colour.r + day * DAY.colour.r + glow * GLOW.colour.r);
+    out[1] = direct * (lamp * LAMP.colour.g + day * DAY.colour.g + glow * GLOW.colour.g);
+    out[2] = direct * (lamp * LAMP.colour.b + day * DAY.colour.b + glow * GLOW.colour.b);
+    let red = 0, green = 0, blue = 0;
     for (const { way: from, light } of this.sides) {
       const share = 0.5 + 0.5 * outwards.dot(from);
-      for (let k = 0; k < 3; k++) out[3 + k] = (out[3 + k] as number) + share * light.getComponent(k);
+      red += share * light.x;
+      green += share * light.y;
+      blue += share * light.z;
     }
-    const open = this.open(place.x + outwards.x * 0.11, place.y + outwards.y * 0.11, place.z + outwards.z * 0.11);
-    const direct = 1 + (open - 1) * DIRECT_SHARE;
-    for (let k = 0; k < 6; k++) out[k] = ((out[k] as number) * (k < 3 ? direct : open)) / Math.PI;
+    out[3] = (red * open) / Math.PI;
+    out[4] = (green * open) / Math.PI;
+    out[5] = (blue * open) / Math.PI;
   }
 
   /** Light on a body that stands somewhere. */
@@ -121,7 +132,7 @@ export class Brightness {
   /** Single lights as they come to a place, by a factor. */
   private raysAt(place: Vector3, factor: number): readonly Ray[] {
     const [toLamp, toGlow] = [new Vector3(), new Vector3()];
-    const lamp = this.lamp(place, toLamp, () => 1);
+    const lamp = this.lamp(place, toLamp);
     const glow = this.glow(place, toGlow);
     return [
       { way: toLamp, light: asVector(LAMP.colour, lamp * factor) },
@@ -135,10 +146,9 @@ export class Brightness {
   }
 
   /** How strong the lamp is at a place, and the way to it. */
-  private lamp(place: Vector3, way: Vector3, facing: (way: Vector3) => number): number {
+  private lamp(place: Vector3, way: Vector3): number {
     way.copy(this.sources.lamp).sub(place).normalize();
-    const share = facing(way);
-    return share && LAMP.strength * share * smooth(OUTER, INNER, -way.dot(this.down));
+    return LAMP.strength * smooth(OUTER, INNER, -way.dot(this.down));
   }
 
   /** How strong the glow of the window is at a place, and the way to it. */
@@ -152,38 +162,37 @@ export class Brightness {
   /** How much of the lamp is seen from a place. */
   private lit(place: Vector3, outwards: Vector3): number {
     let lit = 0;
-    for (const { x, y } of LAMP_SPOTS) {
-      this.spot.copy(this.sources.lamp);
-      this.spot.x += x;
-      this.spot.y += y;
-      if (this.reaches(place, outwards, this.spot)) lit += 1 / LAMP_SPOTS.length;
-    }
+    for (const spot of this.spots) if (this.reaches(place, outwards, spot)) lit += 1 / LAMP_SPOTS.length;
     return lit;
   }
 
   /** Whether nothing is between a surface and a place; what the surface is itself in does not count. */
   private reaches(from: Vector3, outwards: Vector3, to: Vector3): boolean {
-    const { filled, nx, ny, box } = this.voxels;
-    const [x, y, z] = [from.x + outwards.x * 0.06 - box.min.x, from.y + outwards.y * 0.06 - box.min.y, from.z + outwards.z * 0.06 - box.min.z];
-    const [dx, dy, dz] = [to.x - box.min.x - x, to.y - box.min.y - y, to.z - box.min.z - z];
-    const far = Math.hypot(dx, dy, dz);
-    let isOutside = false;
+    const { filled, nx, ny, nz, box, top } = this.voxels;
+    const { min } = box;
+    // All in cells from here on.
+    let x = (from.x + outwards.x * 0.06 - min.x) / CELL_M;
+    let y = (from.y + outwards.y * 0.06 - min.y) / CELL_M;
+    let z = (from.z + outwards.z * 0.06 - min.z) / CELL_M;
+    const dx = (to.x - min.x) / CELL_M - x;
+    const dy = (to.y - min.y) / CELL_M - y;
+    const dz = (to.z - min.z) / CELL_M - z;
+    const far = Math.sqrt(dx * dx + dy * dy + dz * dz);
     // The lamp hangs in its own shade, which lets light through.
-    for (let s = 0; s < far - 0.3; s += CELL_M) {
-      const share = s / far / CELL_M;
-      const [i, j, k] = [Math.floor(x / CELL_M + dx * share), Math.floor(y / CELL_M + dy * share), Math.floor(z / CELL_M + dz * share)];
-      if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny) continue;
-      if (!filled[i + nx * (j + ny * k)]) isOutside = true;
-      else if (isOutside) return false;
+    const near = far - LAMP_OWN_M / CELL_M;
+    const end = dz > 0 ? Math.min(near, (((top - min.z) / CELL_M - z) * far) / dz) : near;
+    let isOutside = false;
+    for (let s = 0; s < end; s++) {
+      if (x >= 0 && y >= 0 && z >= 0 && x < nx && y < ny && z < nz) {
+        if (filled[(x | 0) + nx * ((y | 0) + ny * (z | 0))] === 0) isOutside = true;
+        else if (isOutside) return false;
+      }
+      x += dx / far;
+      y += dy / far;
+      z += dz / far;
     }
     return true;
   }
-}
-
-function add(out: Float32Array, at: number, { r, g, b }: Color, strength: number): void {
-  out[at] = (out[at] as number) + r * strength;
-  out[at + 1] = (out[at + 1] as number) + g * strength;
-  out[at + 2] = (out[at + 2] as number) + b * strength;
 }
 
 const asVector = ({ r, g, b }: Color, strength: number): Vector3 => new Vector3(r, g, b).multiplyScalar(strength);

@@ -1,29 +1,19 @@
 // Joins what never moves into one mesh a material: far fewer draw calls.
 
-import { BufferAttribute, BufferGeometry, type InterleavedBufferAttribute, type Material, Mesh, Object3D } from "three";
+import { BufferAttribute, BufferGeometry, type Material, Mesh, Object3D } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
-
-type Attribute = BufferAttribute | InterleavedBufferAttribute;
-
-/** Packed numbers as floats, so that they can be turned and moved. */
-function asFloats(attribute: Attribute): BufferAttribute {
-  const size = attribute.itemSize;
-  const out = new Float32Array(attribute.count * size);
-  for (let i = 0; i < attribute.count; i++) {
-    for (let k = 0; k < size; k++) out[i * size + k] = attribute.getComponent(i, k);
-  }
-  return new BufferAttribute(out, size);
-}
+import { floats } from "./floats.ts";
 
 /** A mesh's geometry in the world's frame, with exactly the attributes that are named. */
 function placed(mesh: Mesh, names: readonly string[]): BufferGeometry {
   const geometry = new BufferGeometry();
   for (const name of names) {
     const own = mesh.geometry.getAttribute(name);
-    if (own) geometry.setAttribute(name, asFloats(own));
+    // Packed numbers could not be turned and moved.
+    if (own) geometry.setAttribute(name, new BufferAttribute(floats(own), own.itemSize));
   }
   const index = mesh.geometry.getIndex();
-  if (index) geometry.setIndex(Array.from(index.array));
+  if (index) geometry.setIndex(index.clone());
   mesh.updateWorldMatrix(true, false);
   return geometry.applyMatrix4(mesh.matrixWorld);
 }

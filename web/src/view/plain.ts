@@ -17,6 +17,7 @@ import {
 import type { BodyLight } from "./bodylight.ts";
 import { type Brightness, skyOf } from "./brightness.ts";
 import { coded, MOST } from "./coding.ts";
+import { floats } from "./floats.ts";
 import { WHITE } from "./surfaces.ts";
 
 const VERTEX = `
@@ -109,12 +110,14 @@ export class Plain {
     const baked = this.baked.get(geometry) ?? this.begin(geometry, own);
     const [place, outwards] = [new Vector3(), new Vector3()];
     const found = new Float32Array(6);
+    const [from, facing] = [floats(places), floats(normals)];
+    const painted = colours ? { of: floats(colours), size: colours.itemSize } : null;
     for (let i = 0; i < places.count; i++) {
-      place.fromBufferAttribute(places, i).applyMatrix4(at);
-      outwards.fromBufferAttribute(normals, i).transformDirection(at);
+      place.fromArray(from, i * 3).applyMatrix4(at);
+      outwards.fromArray(facing, i * 3).transformDirection(at);
       this.brightness.at(place, outwards, isStill, found);
       for (let k = 0; k < 3; k++) {
-        const colour = (tint[k] as number) * (colours?.getComponent(i, k) ?? 1);
+        const colour = (tint[k] as number) * (painted ? (painted.of[i * painted.size + k] as number) : 1);
         baked.direct[i * 3 + k] = (found[k] as number) * colour;
         baked.sky[i * 3 + k] = (found[k + 3] as number) * colour;
       }

@@ -65,6 +65,8 @@ export class Room {
       mesh.castShadow = ![...SHELL, ...SHADES].includes(name);
       // What stands before the walls is drawn before them.
       mesh.renderOrder = SHELL.includes(name) ? 1 : 0;
+      // They are all around: to find out how far each reaches takes longer than to draw it.
+      mesh.frustumCulled = false;
     }
     this.group.add(joined);
     for (const object of scene.objects) {
@@ -140,6 +142,8 @@ function sharing(geometry: BufferGeometry): BufferGeometry {
   const shape = new BufferGeometry();
   for (const [name, attribute] of Object.entries(geometry.attributes)) shape.setAttribute(name, attribute);
   shape.setIndex(geometry.getIndex());
+  // The file tells how far it reaches.
+  shape.boundingSphere = geometry.boundingSphere;
   return shape;
 }
 

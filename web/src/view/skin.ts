@@ -4,6 +4,7 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, type MeshStandardMaterial, type Material, type SkinnedMesh } from "three";
 import type { BodyLight } from "./bodylight.ts";
 import { coded } from "./coding.ts";
+import { floats } from "./floats.ts";
 import type { Plain } from "./plain.ts";
 import { surface } from "./surfaces.ts";
 
@@ -19,7 +20,8 @@ function numbers(meshes: readonly SkinnedMesh[], name: string, size: number): Fl
   const out = new Float32Array(own.reduce((sum, { count }) => sum + count * size, 0));
   let at = 0;
   for (const attribute of own) {
-    for (let i = 0; i < attribute.count; i++) for (let k = 0; k < size; k++) out[at++] = attribute.getComponent(i, k);
+    floats(attribute, out, at);
+    at += attribute.count * size;
   }
   return out;
 }

@@ -12,20 +12,24 @@ export function split(geometry: BufferGeometry, most: number): BufferGeometry {
   const sizes = names.map((name) => geometry.getAttribute(name).itemSize);
   const places = values[names.indexOf("position")] as number[];
   const far = (a: number, b: number): number => {
-    const [x, y, z] = [0, 1, 2].map((k) => (places[a * 3 + k] as number) - (places[b * 3 + k] as number)) as [number, number, number];
+    const x = (places[a * 3] as number) - (places[b * 3] as number);
+    const y = (places[a * 3 + 1] as number) - (places[b * 3 + 1] as number);
+    const z = (places[a * 3 + 2] as number) - (places[b * 3 + 2] as number);
     return x * x + y * y + z * z;
   };
-  const middles = new Map<number, number>();
   let count = position.count;
+  // Of each corner, its edges to later ones: few, so that they are looked through one by one.
+  const edges: { other: number; middle: number }[][] = Array.from({ length: count }, () => []);
   const middle = (a: number, b: number): number => {
-    const key = Math.min(a, b) * 0x4000000 + Math.max(a, b);
-    const known = middles.get(key);
-    if (known !== undefined) return known;
+    const [low, high] = a < b ? [a, b] : [b, a];
+    const own = edges[low] as { other: number; middle: number }[];
+    for (const edge of own) if (edge.other === high) return edge.middle;
     values.forEach((all, n) => {
       const size = sizes[n] as number;
       for (let k = 0; k < size; k++) all.push(((all[a * size + k] as number) + (all[b * size + k] as number)) / 2);
     });
-    middles.set(key, count);
+    own.push({ other: high, middle: count });
+    edges.push([]);
     return count++;
   };
   const limit = most * most;

@@ -9,6 +9,8 @@ export class Voxels {
   readonly ny: number;
   readonly nz: number;
   readonly filled: Uint8Array;
+  /** Above this nothing stands, metres. */
+  top: number;
 
   /** The room's inside, in metres. */
   constructor(readonly box: Box3) {
@@ -17,6 +19,7 @@ export class Voxels {
     this.ny = Math.max(1, Math.round(size.y / CELL_M));
     this.nz = Math.max(1, Math.round(size.z / CELL_M));
     this.filled = new Uint8Array(this.nx * this.ny * this.nz);
+    this.top = box.min.z;
   }
 
   index(x: number, y: number, z: number): number {
@@ -68,7 +71,9 @@ export class Voxels {
         const q = v / steps;
         const r = 1 - p - q;
         const cell = this.index(a.x * p + b.x * q + c.x * r, a.y * p + b.y * q + c.y * r, a.z * p + b.z * q + c.z * r);
-        if (cell >= 0) this.filled[cell] = 1;
+        if (cell < 0) continue;
+        this.filled[cell] = 1;
+        this.top = Math.max(this.top, a.z * p + b.z * q + c.z * r + CELL_M);
       }
     }
   }
