@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import errno
+import hashlib
+import logging
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +18,9 @@ from adamo_vh.speech.hearing import Recognizer, Whisper
 from adamo_vh.speech.speaking import Flite, Piper, Voice
 
 FLITE = "flite"
+_PART = ".fetching"
+"""Folder within a model's own of what is not whole yet."""
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +94,9 @@ def known(name: str) -> SpeechModel:
 
 
 def fetch(model: SpeechModel, tell: Callable[[str], None] = lambda _: None) -> Path:
-    """Download a model to where it is kept; what is there already is not fetched again.
+    """Download a model to where it is kept; files that are there already are not fetched again.
+
+    A file is there whole, with the digest that the hub tells, or not at all.
 
     Args:
         model: Which one.
@@ -97,23 +106,65 @@ def fetch(model: SpeechModel, tell: Callable[[str], None] = lambda _: None) -> P
         Its folder.
 
     Raises:
-        ConfigError: The extra `speech` is missing, or the model cannot be had now.
+        ConfigError: The extra `speech` is missing, or the model cannot be had or kept now.
     """
     with extra("speech", "Fetching a model of speech"):
-        from huggingface_hub import hf_hub_download
+        import huggingface_hub as hub
+    # It would tell each attempt in lines of its own; what came of all is told below.
+    logging.getLogger("huggingface_hub").setLevel(logging.CRITICAL)
     folder = make_folder(model.folder)
-    for file in model.files:
-        tell(f"{model.source}/{file}")
-        try:
-            hf_hub_download(model.source, file, local_dir=folder)
-        except Exception as error:  # The library raises what its network library does.
-            first = str(error).strip().splitlines()[:1]
-            raise ConfigError(
-                f"{model.name} cannot be fetched from the Hugging Face Hub: "
-                f"{first[0] if first else type(error).__name__}. Try later, or put its files into "
-                f"{folder}."
-            ) from None
+    part = folder / _PART
+    try:
+        for file in model.files:
+            if (folder / file).is_file():
+                continue
+            tell(f"{model.source}/{file}")
+            told = hub.get_hf_file_metadata(hub.hf_hub_url(model.source, file))
+            path = Path(
+                hub.hf_hub_download(model.source, file, revision=told.commit_hash, local_dir=part)
+            )
+            if told.etag and not _has_digest(path, told.etag):
+                raise ConfigError(
+                    f"{model.name}: {file} came otherwise than it is on the Hugging Face Hub; it "
+                    "was deleted. Fetch it again."
+                )
+            make_folder((folder / file).parent)
+            path.replace(folder / file)
+    except ConfigError:
+        raise
+    except Exception as error:  # The library raises what its network library does.
+        raise ConfigError(f"{model.name} {_why(error, model, folder)}") from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
     return folder
+
+
+def _has_digest(path: Path, etag: str) -> bool:
+    """Whether a file is what the hub tells: the SHA-256 of large ones, Git's name of the others."""
+    size, content = path.stat().st_size, path.open("rb")
+    with content:
+        match len(etag):
+            case 64:
+                return hashlib.file_digest(content, "sha256").hexdigest() == etag
+            case 40:
+                told = hashlib.sha1(b"blob %d\0" % size + content.read(), usedforsecurity=False)
+                return told.hexdigest() == etag
+    return True
+
+
+def _why(error: Exception, model: SpeechModel, folder: Path) -> str:
+    """Why a model could not be fetched, and what helps."""
+    if isinstance(error, OSError) and error.errno in _FULL:
+        return (
+            f"cannot be kept in {folder}: {error.strerror}. It takes {model.megabytes} MB; make "
+            "room, or set ADAMO_VH_DATA_DIR to another folder, and fetch it again."
+        )
+    first = str(error).strip().splitlines()[:1]
+    return (
+        f"cannot be fetched from the Hugging Face Hub: "
+        f"{(first[0] if first else type(error).__name__).rstrip('.')}. Try later, or put its files "
+        f"into {folder}."
+    )
 
 
 def recognizer(name: str = DEFAULT_EARS, hints: str = "") -> Recognizer:
