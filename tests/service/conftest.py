@@ -10,10 +10,11 @@ from typing import Any
 
 import pytest
 
+from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.service.app import MAX_BODY_BYTES, serving
 from adamo_vh.service.hosting import Host, Terms
 from adamo_vh.serving.admission import Rules
-from adamo_vh.session.lending import LentWorld
+from adamo_vh.session.lending import Lender, LentWorld
 from adamo_vh.session.pooling import Engines
 
 JUDGE = "judge-of-the-tests"
@@ -34,6 +35,25 @@ def make_host(lent: LentWorld, tmp_path: Path) -> Iterator[Callable[..., Host]]:
             return host
 
         yield make
+
+
+@pytest.fixture(scope="module")
+def standing_host(
+    s1_engine: BuiltinEngine, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Host]:
+    """One host for the tests of a module in which nobody plays for long."""
+    s1_engine.reset(0)
+    engines = Engines(ready={("s1", "mara", 0): Lender(s1_engine)})
+    host = Host(tmp_path_factory.mktemp("standing"), SMALL, engines)
+    yield host
+    host.close_all()
+
+
+@pytest.fixture(scope="module")
+def standing(standing_host: Host) -> Iterator[str]:
+    """The address of its server: to start one takes longer than to be refused by it."""
+    with serving(standing_host, rules=RULES) as url:
+        yield url
 
 
 @pytest.fixture

@@ -25,6 +25,12 @@ def server(serve: Serve) -> Iterator[tuple[httpx.Client, Host]]:
         yield client, host
 
 
+@pytest.fixture
+def standing_server(standing: str, standing_host: Host) -> Iterator[tuple[httpx.Client, Host]]:
+    with httpx.Client(base_url=standing, timeout=60) as client:
+        yield client, standing_host
+
+
 def begun(client: httpx.Client, **asked: Any) -> tuple[str, Welcome]:
     answer = client.post("/v1/sessions", json={"task": "T1", **asked})
     assert answer.status_code == 201, answer.text
@@ -104,9 +110,9 @@ def test_a_player_is_told_nothing_but_the_end(server: tuple[httpx.Client, Host])
     ],
 )
 def test_a_wrong_setting_is_told_in_a_line(
-    server: tuple[httpx.Client, Host], asked: dict[str, Any], said: str
+    standing_server: tuple[httpx.Client, Host], asked: dict[str, Any], said: str
 ) -> None:
-    client, host = server
+    client, host = standing_server
     answer = client.post("/v1/sessions", json={"task": "T1", **asked})
     assert answer.status_code in (400, 422) and said in answer.json()["error"]["message"]
     assert host.sessions() == ()
@@ -117,9 +123,9 @@ def test_a_wrong_setting_is_told_in_a_line(
     [b"", b"[]", b"{", b'{"seed": -1}', b'{"seed": 1e999}', b'{"x": 1}', b"[" * 10_000, b"\xff"],
 )
 def test_what_is_no_message_is_told_in_a_line(
-    server: tuple[httpx.Client, Host], body: bytes
+    standing_server: tuple[httpx.Client, Host], body: bytes
 ) -> None:
-    client, _ = server
+    client, _ = standing_server
     headers = {"content-type": "application/json"}
     answer = client.post("/v1/sessions", content=body, headers=headers)
     assert answer.status_code in (400, 422) and answer.json()["error"]["message"]

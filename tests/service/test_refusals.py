@@ -62,13 +62,12 @@ def filled(path: str) -> str:
     return path.replace("{session}", "none").replace("{name}", "none").replace("{path:path}", "x")
 
 
-@pytest.fixture
-def locked(make_host: Any) -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    host: Host = make_host()
-    app: Any = create_app(host, LOCKED).app
+@pytest.fixture(scope="module")
+def locked(standing_host: Host) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    app: Any = create_app(standing_host, LOCKED).app
     routes = sorted({(method, filled(path)) for method, path in walked(app.routes)})
     assert len(routes) >= 20 and {"WS", "GET", "POST", "DELETE"} <= {m for m, _ in routes}
-    with serving(make_host(), rules=LOCKED) as url:
+    with serving(standing_host, rules=LOCKED) as url:
         yield url, routes
 
 

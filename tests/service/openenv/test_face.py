@@ -58,6 +58,11 @@ def url(serve: Serve) -> str:
 
 
 @pytest.fixture
+def asked_only(standing: str) -> str:
+    return standing + "/openenv"
+
+
+@pytest.fixture
 def join() -> Iterator[Callable[[str], Client]]:
     with ExitStack() as stack:
 
@@ -150,17 +155,19 @@ def test_a_session_has_one_episode_at_a_time(serve: Serve, join: Callable[[str],
     ],
 )
 def test_what_makes_no_sense_is_said_and_ends_nothing(
-    url: str, join: Callable[[str], Client], message: str, code: str
+    asked_only: str, join: Callable[[str], Client], message: str, code: str
 ) -> None:
-    client = join(url)
+    client = join(asked_only)
     told = client.send(message)
     assert (told["type"], told["data"]["code"]) == ("error", code)
     assert told["data"]["message"]
     assert client.ask("state")["data"]["step_count"] == 0
 
 
-def test_tools_are_listed_before_any_episode(url: str, join: Callable[[str], Client]) -> None:
-    found = join(url).ask("step", {"type": "list_tools"})["data"]["observation"]["tools"]
+def test_tools_are_listed_before_any_episode(
+    asked_only: str, join: Callable[[str], Client]
+) -> None:
+    found = join(asked_only).ask("step", {"type": "list_tools"})["data"]["observation"]["tools"]
     names = [tool["name"] for tool in found]
     assert names == ["Look", "Walk", "Pick", "Drop", "Finish", "observe"]
     assert all(set(tool) == {"name", "description", "input_schema"} for tool in found)
@@ -181,8 +188,8 @@ def test_over_http_a_session_is_named_by_its_id(url: str) -> None:
         assert unknown.status_code == 404
 
 
-def test_tasks_are_listed_by_scene(url: str) -> None:
-    with httpx.Client(base_url=url, timeout=60) as http:
+def test_tasks_are_listed_by_scene(asked_only: str) -> None:
+    with httpx.Client(base_url=asked_only, timeout=60) as http:
         assert http.get("/list_environments").json() == ["adamo_vh"]
         splits = http.get("/adamo_vh/splits").json()
         assert splits == [{"name": "S1", "type": "test"}, {"name": "S2", "type": "test"}]
@@ -219,14 +226,14 @@ def test_json_rpc_plays_without_a_reward(url: str) -> None:
 
 
 @pytest.mark.parametrize("body", [{}, [], None, 3, {"jsonrpc": "2.0", "method": "jump"}])
-def test_json_rpc_answers_whatever_comes(url: str, body: Any) -> None:
-    answer = httpx.post(f"{url}/mcp", json=body, timeout=60)
+def test_json_rpc_answers_whatever_comes(asked_only: str, body: Any) -> None:
+    answer = httpx.post(f"{asked_only}/mcp", json=body, timeout=60)
     assert (answer.status_code, answer.json()["jsonrpc"]) == (200, "2.0")
     assert answer.json()["error"]["code"] in (-32600, -32601)
 
 
-def test_what_it_is_and_takes_is_told(url: str) -> None:
-    with httpx.Client(base_url=url, timeout=60) as http:
+def test_what_it_is_and_takes_is_told(asked_only: str) -> None:
+    with httpx.Client(base_url=asked_only, timeout=60) as http:
         assert http.get("/health").json() == {"status": "healthy"}
         about = http.get("/metadata").json()
         assert about["name"] == "adamo_vh" and "3D room" in about["description"]
@@ -236,10 +243,10 @@ def test_what_it_is_and_takes_is_told(url: str) -> None:
         assert {"/reset", "/step", "/state", "/mcp"} <= set(paths)
 
 
-def test_strangers_are_refused_as_on_every_face(url: str) -> None:
+def test_strangers_are_refused_as_on_every_face(asked_only: str) -> None:
     for headers in ({"host": "evil.example"}, {"origin": "http://evil.example"}):
-        assert httpx.post(f"{url}/reset", json={}, headers=headers).status_code == 403
-        assert httpx.get(f"{url}/health", headers=headers).status_code == 403
+        assert httpx.post(f"{asked_only}/reset", json={}, headers=headers).status_code == 403
+        assert httpx.get(f"{asked_only}/health", headers=headers).status_code == 403
 
 
 def test_the_server_keeps_to_what_it_publishes(serve: Serve) -> None:

@@ -7,9 +7,11 @@ frame, so a pose is one rotation for each joint, relative to its parent, plus a 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from adamo_vh.geometry import Array
 from adamo_vh.runtime.human.hand import WRIST, finger_joints
@@ -63,13 +65,21 @@ INDEX = {name: i for i, name in enumerate(JOINTS)}
 PARENTS: tuple[int, ...] = tuple(-1 if parent is None else INDEX[parent] for _, parent, _ in _TABLE)
 REST: Array = np.array([place for _, _, place in _TABLE])
 """(J, 3) places of the joints in the rest pose, body frame, metres."""
-_LIMB_COUNT = len(JOINTS) - 2 * len(_FINGERS)
-_FINGER_ROWS = tuple(
-    (row, np.array([PARENTS[j] for j in row]))
-    for k in (1, 2, 3)
-    for row in [np.array([j for j, name in enumerate(JOINTS) if f"_{k}_" in name])]
-)
-"""Numbers of the first joints of all fingers and of their parents, then the second, the third."""
+
+
+def _generations() -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], Array]]:
+    depths = [0]
+    for parent in PARENTS[1:]:
+        depths.append(depths[parent] + 1)
+    for depth in range(1, max(depths) + 1):
+        row = np.flatnonzero(np.array(depths) == depth)
+        parents = np.array(PARENTS)[row]
+        yield row, parents, (REST[row] - REST[parents])[:, :, None]
+
+
+_GENERATIONS = tuple(_generations())
+"""Numbers of the joints that are so many joints from the pelvis, of their parents, and (N, 3, 1)
+the way from these: all of a generation are placed at once."""
 EYES = np.array([0.085, 0.0, 1.60])
 """Midpoint between the eyes in the rest pose, body frame; moves with the head."""
 
@@ -93,16 +103,10 @@ def joint_frames(pose: Pose) -> tuple[Array, Array]:
     """
     places = np.empty((len(JOINTS), 3))
     rotations = np.empty((len(JOINTS), 3, 3))
-    for j, parent in enumerate(PARENTS[:_LIMB_COUNT]):
-        if parent < 0:
-            places[j] = REST[j] + pose.pelvis_shift
-            rotations[j] = pose.rotations[j]
-        else:
-            places[j] = places[parent] + rotations[parent] @ (REST[j] - REST[parent])
-            rotations[j] = rotations[parent] @ pose.rotations[j]
-    for row, parents in _FINGER_ROWS:
+    places[0] = REST[0] + pose.pelvis_shift
+    rotations[0] = pose.rotations[0]
+    for row, parents, shifts in _GENERATIONS:
         held = rotations[parents]
-        shifts = REST[row] - REST[parents]
-        places[row] = places[parents] + np.matmul(held, shifts[:, :, None])[:, :, 0]
+        places[row] = places[parents] + np.matmul(held, shifts)[:, :, 0]
         rotations[row] = np.matmul(held, pose.rotations[row])
     return places, rotations

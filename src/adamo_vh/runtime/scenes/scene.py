@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -182,6 +183,11 @@ def parse_scene(text: str, source: str) -> Scene:
         raise SceneError(str(error)) from None
 
 
+@cache
+def _codec() -> TypeAdapter[Scene]:
+    return TypeAdapter(Scene)
+
+
 def scene_from(data: Mapping[str, Any], source: str) -> Scene:
     """Validate the data of a scene file.
 
@@ -193,7 +199,7 @@ def scene_from(data: Mapping[str, Any], source: str) -> Scene:
         SceneError: Names the source, the field and the fix; its `faults` are all that is wrong.
     """
     try:
-        scene = TypeAdapter(Scene).validate_python(data)
+        scene = _codec().validate_python(data)
     except ValidationError as error:
         faults = field_faults(error)
     else:
