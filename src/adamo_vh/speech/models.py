@@ -109,7 +109,7 @@ def fetch(model: SpeechModel, tell: Callable[[str], None] = lambda _: None) -> P
         ConfigError: The extra `speech` is missing, or the model cannot be had or kept now.
     """
     with extra("speech", "Fetching a model of speech"):
-        import huggingface_hub as hub
+        from huggingface_hub import get_hf_file_metadata, hf_hub_download, hf_hub_url
     # It would tell each attempt in lines of its own; what came of all is told below.
     logging.getLogger("huggingface_hub").setLevel(logging.CRITICAL)
     folder = make_folder(model.folder)
@@ -119,9 +119,9 @@ def fetch(model: SpeechModel, tell: Callable[[str], None] = lambda _: None) -> P
             if (folder / file).is_file():
                 continue
             tell(f"{model.source}/{file}")
-            told = hub.get_hf_file_metadata(hub.hf_hub_url(model.source, file))
+            told = get_hf_file_metadata(hf_hub_url(model.source, file))
             path = Path(
-                hub.hf_hub_download(model.source, file, revision=told.commit_hash, local_dir=part)
+                hf_hub_download(model.source, file, revision=told.commit_hash, local_dir=part)
             )
             if told.etag and not _has_digest(path, told.etag):
                 raise ConfigError(
