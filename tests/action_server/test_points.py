@@ -18,7 +18,7 @@ NEXT_TO = (-1.0, 0.0, 1.0)
 inside = st.tuples(st.floats(-2.9, 2.9), st.floats(-4.9, 2.9), st.floats(0.05, 3.1))
 off = st.tuples(*[st.sampled_from(NEXT_TO)] * 3).filter(any)
 quick = settings(
-    max_examples=30,
+    max_examples=15,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 

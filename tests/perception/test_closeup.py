@@ -29,7 +29,7 @@ from adamo_vh.perception.plates import INK, tag_colour
 from adamo_vh.perception.visibility import PixelBox, visible_objects
 from adamo_vh.runtime.builtin import BuiltinEngine
 
-FULL = (1920, 1080)
+FULL = (1280, 720)
 SMALL = (480, 270)
 PLATE, KEY, PEANUT_BUTTER, CUP, GLASS = 57, 34, 8, 45, 37
 STRIP_PX = strip_px(CLOSEUP_FONT_PX)

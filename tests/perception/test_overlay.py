@@ -60,7 +60,7 @@ def scenes(draw):
     return percept(ids(width, height, boxes))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(view=scenes(), grid=st.integers(0, 7))
 def test_tags_are_inside_disjoint_and_beside_what_they_name(view, grid):
     width, height = view.camera.width_px, view.camera.height_px
@@ -82,7 +82,7 @@ def test_tags_are_inside_disjoint_and_beside_what_they_name(view, grid):
         assert apart(rects[point.tag], (u, v, u + 1, v + 1))
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(
     size=st.tuples(st.integers(20, 120), st.integers(12, 80)),
     count=st.integers(0, 30),

@@ -109,7 +109,7 @@ def test_ctrl_c_leaves_no_half_drawn_world(engine: BuiltinEngine) -> None:
 
 FORKED = """
 import os, sys, adamo_vh
-engine = adamo_vh.create_engine("s1")
+engine = adamo_vh.create_engine({{scene!r}})
 {before}
 pid = os.fork()
 if pid == 0:
@@ -122,15 +122,17 @@ if pid == 0:
 print("exit", os.waitpid(pid, 0)[1], flush=True)
 """
 DRAW = "engine.capture(64, 36)"
-NEW = 'adamo_vh.create_engine("s1")'
+NEW = "adamo_vh.create_engine({scene!r})"
 
 
 @pytest.mark.parametrize(
     ("before", "inside", "works"),
     [(DRAW, f"engine.stage.forget(); {DRAW}", False), (DRAW, NEW, False), ("pass", DRAW, True)],
 )
-def test_after_a_fork_there_is_an_answer_at_once(before: str, inside: str, works: bool) -> None:
-    program = FORKED.format(before=before, inside=inside)
+def test_after_a_fork_there_is_an_answer_at_once(
+    before: str, inside: str, works: bool, bare_scene: str
+) -> None:
+    program = FORKED.format(before=before, inside=inside).format(scene=bare_scene)
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True
     )
@@ -140,8 +142,8 @@ def test_after_a_fork_there_is_an_answer_at_once(before: str, inside: str, works
 
 
 @pytest.mark.parametrize("end", ["", "engine.me = engine; del engine", "1 / 0"])
-def test_a_process_ends_well_with_engines_that_nobody_closed(end: str) -> None:
-    program = f"import adamo_vh; engine = adamo_vh.create_engine('s1'); {DRAW}; {end}"
+def test_a_process_ends_well_with_engines_that_nobody_closed(end: str, bare_scene: str) -> None:
+    program = f"import adamo_vh; engine = adamo_vh.create_engine({bare_scene!r}); {DRAW}; {end}"
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=False
     )

@@ -37,11 +37,11 @@ def used(scene: str = "s1", figure: str = "mara"):
         return engine
 
 
-def test_the_next_episode_in_the_same_place_gets_the_same_engine():
-    first = used()
-    assert used() is first
-    assert used(figure="ken") is not first
-    assert used() is first
+def test_the_next_episode_in_the_same_place_gets_the_same_engine(bare_scene):
+    first = used(bare_scene)
+    assert used(bare_scene) is first
+    assert used(bare_scene, "ken") is not first
+    assert used(bare_scene) is first
 
 
 def test_whatever_was_done_in_it_it_is_as_new():
@@ -58,15 +58,15 @@ def test_whatever_was_done_in_it_it_is_as_new():
         assert again.stage.watcher is None
 
 
-def test_two_at_once_have_one_each():
-    with engine_for("s1", "mara") as one, engine_for("s1", "mara") as other:
+def test_two_at_once_have_one_each(bare_scene):
+    with engine_for(bare_scene, "mara") as one, engine_for(bare_scene, "mara") as other:
         assert one is not other
 
 
-def test_one_that_does_not_come_back_to_its_start_is_replaced():
-    with engine_for("s1", "mara") as engine:
+def test_one_that_does_not_come_back_to_its_start_is_replaced(bare_scene):
+    with engine_for(bare_scene, "mara") as engine:
         engine._settled[:] += 0.01
-    assert used() is not engine
+    assert used(bare_scene) is not engine
 
 
 def test_a_changed_scene_file_is_another_place(tmp_path: Path):
@@ -81,14 +81,14 @@ def test_a_changed_scene_file_is_another_place(tmp_path: Path):
     assert used(str(file)) is not first
 
 
-def test_no_more_than_two_stay():
-    engines = [used(figure=figure) for figure in ("mara", "ken", "jonas")]
-    assert used(figure="mara") is not engines[0]
-    assert used(figure="jonas") is engines[2]
+def test_no_more_than_two_stay(bare_scene):
+    engines = [used(bare_scene, figure) for figure in ("mara", "ken", "jonas")]
+    assert used(bare_scene, "mara") is not engines[0]
+    assert used(bare_scene, "jonas") is engines[2]
 
 
-def test_a_child_process_makes_its_own():
-    engine = used()
+def test_a_child_process_makes_its_own(bare_scene):
+    engine = used(bare_scene)
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
@@ -98,7 +98,7 @@ def test_a_child_process_makes_its_own():
         os._exit(0)
     os.waitpid(child, 0)
     assert os.read(read, 1) == b"1"
-    assert used() is engine
+    assert used(bare_scene) is engine
 
 
 def test_an_episode_is_recorded_as_in_an_engine_made_for_it(tmp_path: Path):
@@ -124,14 +124,14 @@ def test_an_engine_that_an_episode_broke_serves_no_other():
     assert played().completion == 1.0
 
 
-def test_a_session_gives_its_engine_back_when_it_is_closed():
+def test_a_session_gives_its_engine_back_when_it_is_closed(bare_scene):
     from adamo_vh.episode.config import EpisodeConfig
 
-    config = EpisodeConfig.of("Stand still", model="random", resolution=(64, 64))
+    config = EpisodeConfig.of("Stand still", model="random", resolution=(64, 64), scene=bare_scene)
     with Session.begin(config) as session:
         engine = session.engine
-        assert used() is not engine
-    with engine_for("s1", "mara") as one, engine_for("s1", "mara") as other:
+        assert used(bare_scene) is not engine
+    with engine_for(bare_scene, "mara") as one, engine_for(bare_scene, "mara") as other:
         assert engine in (one, other)
 
 

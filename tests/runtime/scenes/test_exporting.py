@@ -92,9 +92,9 @@ def test_textures_are_inside(exported: Any) -> None:
     assert pictures >= 5
 
 
-def test_the_command_exports_a_scene(tmp_path: Path) -> None:
+def test_the_command_exports_a_scene(tmp_path: Path, bare_scene: str) -> None:
     done = CliRunner().invoke(
-        app, ["scenes", "export", "s1", "--out", str(tmp_path / "s1")], catch_exceptions=False
+        app, ["scenes", "export", bare_scene, "--out", str(tmp_path / "s1")], catch_exceptions=False
     )
     assert done.exit_code == 0 and "meshes" in done.stdout and "MB" in done.stdout
     told = json.loads((tmp_path / "s1" / "scene.json").read_text())

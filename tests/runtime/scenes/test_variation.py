@@ -80,7 +80,7 @@ def test_draws_follow_their_weights() -> None:
 
 
 @BOTH
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(number=st.integers(1, 999_999), attempt=st.integers(0, 50))
 def test_every_drawing_is_a_sound_arrangement(scene: Scene, number: int, attempt: int) -> None:
     drawn = varied(scene, number, attempt)
