@@ -17,11 +17,13 @@ import {
 } from "three";
 import { type Lights, lightRoom } from "../view/lights.ts";
 import { meshesIn } from "../view/loading.ts";
+import { drawsPlainly } from "../view/machine.ts";
 import { Overlay } from "../view/overlay.ts";
 import { across } from "../view/pointing.ts";
 import type { Draft } from "./draft.ts";
 import { Orbit } from "./orbit.ts";
 import { areaMesh, Assets, lightMesh, loadShell, startMesh } from "./pieces.ts";
+import { Plainly, type Standing } from "./plainly.ts";
 import { meshOfScene } from "./remote.ts";
 import { type Catalog, isSame, keyOf, nameOf, type Ref, type SceneData, type Three } from "./scene.ts";
 import { heightOf, radians } from "./support.ts";
@@ -57,6 +59,11 @@ export class Picture {
   private readonly box = new Box3Helper(new Box3(), new Color(ACCENT));
   /** Around what is selected, turned as it is. */
   private readonly frame = new Group().add(this.box);
+  /** Draws plainly where a processor draws. */
+  private readonly plainly: Plainly | null;
+  private shell: Object3D | null = null;
+  /** What stood where when it was shown last. */
+  private places = "";
   private isAsked = false;
   private isClosed = false;
 
@@ -65,14 +72,16 @@ export class Picture {
     private readonly draft: Draft,
     private readonly catalog: Catalog,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.shadowMap.enabled = true;
+    const isPlain = drawsPlainly();
+    this.renderer = new WebGLRenderer({ canvas, antialias: !isPlain, alpha: true });
+    this.renderer.shadowMap.enabled = !isPlain;
     this.renderer.shadowMap.type = PCFShadowMap;
     const { room } = draft.data;
     this.orbit = new Orbit(room);
     this.lights = lightRoom(room, null, true);
     this.lights.shadowSize(1024);
-    this.assets = new Assets(() => this.update());
+    this.assets = new Assets(() => this.update(), isPlain);
+    this.plainly = isPlain ? new Plainly(room, () => this.standing(), () => this.touch()) : null;
     this.scene.add(this.lights.group, this.frame);
     draft.changes.listen(() => this.update());
     this.update();
@@ -80,15 +89,25 @@ export class Picture {
 
   /** The walls come with the scene that one began with. */
   async open(sceneName: string): Promise<void> {
-    const shell = await loadShell(meshOfScene(sceneName), this.draft.data.room);
+    const shell = await loadShell(meshOfScene(sceneName), this.draft.data.room, this.plainly !== null);
     this.scene.add(shell);
+    this.shell = shell;
+    this.plainly?.dress(shell);
+    this.plainly?.soon();
     this.update();
+  }
+
+  /** What light falls on. */
+  private standing(): Standing[] {
+    const pieces = [...this.shown.values()].map(({ node, ref }): Standing => ({ node, kind: ref.kind === "furniture" ? "furniture" : "object" }));
+    return this.shell ? [...pieces, { node: this.shell, kind: "walls" }] : pieces;
   }
 
   /** Show the scene as it is now. */
   private update(): void {
     const { data, selected } = this.draft;
     const left = new Set(this.shown.keys());
+    const fresh: Object3D[] = [];
     const show = (ref: Ref, made: string, make: () => Object3D): Object3D => {
       const key = keyOf(ref);
       left.delete(key);
@@ -98,6 +117,7 @@ export class Picture {
       const node = make();
       this.shown.set(key, { node, made, ref });
       this.scene.add(node);
+      fresh.push(node);
       return node;
     };
     data.furniture.forEach((piece, index) => {
@@ -126,6 +146,10 @@ export class Picture {
       if (gone) this.scene.remove(gone.node);
       this.shown.delete(key);
     }
+    for (const node of fresh) this.plainly?.dress(node);
+    const places = JSON.stringify([data.furniture, data.objects]);
+    if (fresh.length || places !== this.places) this.plainly?.soon();
+    this.places = places;
     this.brighten(data);
     this.enframe(selected);
     this.lights.refresh();
@@ -143,7 +167,9 @@ export class Picture {
 
   private brighten(data: SceneData): void {
     const sum = data.lights.reduce((total, { diffuse }) => total + diffuse, data.ambient);
-    this.lights.dim(Math.min(1.6, sum / FULL_LIGHT));
+    const share = Math.min(1.6, sum / FULL_LIGHT);
+    this.lights.dim(share);
+    this.plainly?.dim(share);
   }
 
   private enframe(selected: Ref | null): void {
@@ -238,6 +264,7 @@ export class Picture {
 
   close(): void {
     this.isClosed = true;
+    this.plainly?.close();
     for (const mesh of meshesIn(this.scene)) {
       mesh.geometry.dispose();
       (mesh.material as Material).dispose();

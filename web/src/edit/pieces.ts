@@ -22,6 +22,9 @@ import {
   Vector3,
 } from "three";
 import { loadGltf, meshesIn, nodesByName } from "../view/loading.ts";
+import { merged } from "../view/merging.ts";
+import { FINE_M, isFloor } from "../view/room.ts";
+import { split } from "../view/splitting.ts";
 import { mattLook } from "../view/surfaces.ts";
 import { meshOfAsset } from "./remote.ts";
 import type { FloorArea, SceneData, SceneLight, Three } from "./scene.ts";
@@ -36,13 +39,22 @@ const LAMP = new MeshBasicMaterial({ color: 0xffd36b });
 const LAMP_LINE = new LineBasicMaterial({ color: 0xd99a1c });
 const BEAM_M = 0.6;
 const FLOOR_COLOUR = 0xb79a78;
+/** What one looks in through. */
+const UNSEEN = ["ceiling", "outside"];
 
 /** Loads each asset once; until it is there, a box of its size stands for it. */
 export class Assets {
   private readonly made = new Map<string, Object3D>();
   private readonly asked = new Set<string>();
 
-  constructor(private readonly arrived: () => void) {}
+  /**
+   * @param arrived Called when an asset is there.
+   * @param isPlain Whether it is to be drawn plainly: then it is lit elsewhere.
+   */
+  constructor(
+    private readonly arrived: () => void,
+    private readonly isPlain: boolean,
+  ) {}
 
   has(name: string): boolean {
     return this.made.has(name);
@@ -64,7 +76,7 @@ export class Assets {
       const { scene } = await loadGltf(meshOfAsset(name));
       scene.rotation.x = Math.PI / 2; // glTF has Y up.
       for (const mesh of meshesIn(scene)) {
-        mesh.material = mattLook(mesh.material as Material);
+        if (!this.isPlain) mesh.material = mattLook(mesh.material as Material);
         mesh.castShadow = mesh.receiveShadow = true;
       }
       this.made.set(name, new Group().add(scene));
@@ -76,23 +88,32 @@ export class Assets {
 }
 
 /** The walls as one sees them from inside and from above; a bare floor where they cannot be had. */
-export async function loadShell(url: string, room: SceneData["room"]): Promise<Object3D> {
+export async function loadShell(url: string, room: SceneData["room"], isPlain: boolean): Promise<Object3D> {
   try {
     const nodes = nodesByName(await loadGltf(url));
     const shell = nodes.get("room");
     if (!shell) return bareFloor(room);
     shell.removeFromParent();
+    if (isPlain) return plainShell(shell);
     for (const mesh of meshesIn(shell)) {
       const look = mattLook(mesh.material as Material).clone();
       look.side = FrontSide; // The near walls are looked through.
       mesh.material = look;
-      mesh.visible = !["ceiling", "outside"].includes(look.name);
+      mesh.visible = !UNSEEN.includes(look.name);
       mesh.receiveShadow = true;
     }
     return shell;
   } catch {
     return bareFloor(room);
   }
+}
+
+/** Cut finely enough for shades on the floor. */
+function plainShell(shell: Object3D): Object3D {
+  shell.updateMatrixWorld(true);
+  const meshes = meshesIn(shell).filter((mesh) => !UNSEEN.includes((mesh.material as Material).name));
+  for (const mesh of meshes) (mesh.material as Material).side = FrontSide;
+  return merged(meshes, (mesh, geometry) => (isFloor(mesh) ? split(geometry, FINE_M) : geometry));
 }
 
 function bareFloor({ x_min, x_max, y_min, y_max }: SceneData["room"]): Object3D {

@@ -2,6 +2,12 @@
 
 let known: boolean | null = null;
 
+/** Whether rooms are drawn plainly: where a processor draws, or as the address asks for. */
+export function drawsPlainly(): boolean {
+  const asked = new URLSearchParams(location.search).get("quality");
+  return isSoftware() ? asked !== "full" : asked === "plain";
+}
+
 /** Whether a processor draws; then nothing on the page moves that need not. */
 export function isSoftware(): boolean {
   if (known !== null) return known;

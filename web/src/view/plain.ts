@@ -64,7 +64,8 @@ export class Plain {
   private readonly maps = new Map<Texture, Texture>();
   private readonly made = new Map<Material, Material>();
 
-  constructor(private readonly brightness: Brightness) {}
+  /** @param brightness Tells the light of a place; another one holds for what is lit from then on. */
+  constructor(public brightness: Brightness) {}
 
   /** How a material of a file is drawn plainly. */
   look(own: Material): Material {
@@ -143,6 +144,11 @@ export class Plain {
     geometry.setAttribute("light", new BufferAttribute(new Uint8ClampedArray(count * 4).fill(coded(1.2)), 4, true));
   }
 
+  /** Keep no light for something that is gone. */
+  forget(geometry: BufferGeometry): void {
+    this.baked.delete(geometry);
+  }
+
   /** The light on a body that stands somewhere. */
   around(x: number, y: number): BodyLight {
     return this.brightness.around(x, y, this.dims);
@@ -150,6 +156,7 @@ export class Plain {
 
   /** Change the brightness: 1 is a lit room, 0 a dark one. */
   dim(share: number): void {
+    if (share === this.dims[0]) return;
     this.dims = [share, skyOf(share)];
     for (const baked of this.baked.values()) this.shade(baked);
   }

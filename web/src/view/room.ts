@@ -13,7 +13,7 @@ import { fullLook, SHADES, surface } from "./surfaces.ts";
 import { Voxels } from "./voxels.ts";
 
 /** The longest edge where shades are to be seen within a surface. */
-const FINE_M = 0.2;
+export const FINE_M = 0.2;
 /** What is moved further than this, metres, or turned so, is lit anew. */
 const LIT_AGAIN = 0.1;
 const SHELL = ["walls", "ceiling", "parquet", "outside"];
@@ -138,7 +138,7 @@ export class Room {
 }
 
 /** The same shape, to which something of its own may be added. */
-function sharing(geometry: BufferGeometry): BufferGeometry {
+export function sharing(geometry: BufferGeometry): BufferGeometry {
   const shape = new BufferGeometry();
   for (const [name, attribute] of Object.entries(geometry.attributes)) shape.setAttribute(name, attribute);
   shape.setIndex(geometry.getIndex());
@@ -152,13 +152,13 @@ const isNear = (a: Matrix4, b: Matrix4): boolean =>
   a.elements.every((value, i) => Math.abs(value - (b.elements[i] ?? 0)) < LIT_AGAIN);
 
 /** Whether it lies on the floor or hangs on a wall so flat that nothing can be behind it. */
-function isFlat(mesh: Mesh): boolean {
+export function isFlat(mesh: Mesh): boolean {
   mesh.geometry.computeBoundingBox();
   const size = mesh.geometry.boundingBox?.clone().applyMatrix4(mesh.matrixWorld).getSize(new Vector3());
   return size !== undefined && size.z < 0.03;
 }
 
-const isFloor = (mesh: Mesh): boolean => (mesh.material as Material).name === "parquet";
+export const isFloor = (mesh: Mesh): boolean => (mesh.material as Material).name === "parquet";
 
 function windowOf(meshes: readonly Mesh[]): Vector3 | null {
   const pane = meshes.find((mesh) => (mesh.material as Material).name === "outside");

@@ -10,7 +10,7 @@ import type { Bearing } from "./life.ts";
 import { type Lights, lightRoom, surroundings } from "./lights.ts";
 import { loadGltf, type Progress } from "./loading.ts";
 import { EXPOSURE } from "./coding.ts";
-import { isSoftware } from "./machine.ts";
+import { drawsPlainly } from "./machine.ts";
 import { Quality } from "./quality.ts";
 import { Room } from "./room.ts";
 
@@ -81,8 +81,7 @@ export class Stage {
     progress?: Progress,
   ): Promise<Stage> {
     const loading = Promise.all([loadGltf(urls.scene, progress), loadGltf(urls.figure)]);
-    const asked = new URLSearchParams(location.search).get("quality");
-    const isPlain = isSoftware() ? asked !== "full" : asked === "plain";
+    const isPlain = drawsPlainly();
     const renderer = new WebGLRenderer({ canvas, antialias: !isPlain, powerPreference: "high-performance" });
     renderer.outputColorSpace = SRGBColorSpace;
     renderer.toneMapping = ACESFilmicToneMapping;
