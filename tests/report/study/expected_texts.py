@@ -221,7 +221,7 @@ LATEX = r"""% Tiny
   \label{tab:headline}
   \begin{tabular}{llrrrrrrrrrrr}
     \toprule
-    model & kind & completion & would it repeat? & other tasks? & strict & strict: would it repeat? & strict: other tasks? & pass\textasciicircum{}k & k & tasks & n & unscored \\
+    model & kind & completion & \shortstack[r]{would it\\repeat?} & other tasks? & strict & \shortstack[r]{strict: would\\it repeat?} & \shortstack[r]{strict: other\\tasks?} & pass\textasciicircum{}k & k & tasks & n & unscored \\
     \midrule
     openai:gpt-4o & vlm & 0.88 & 0.00 to 1.00 & 0.00 to 1.00 & 0.75 & 0.00 to 1.00 & 0.00 to 1.00 & 0.50 & 2 & 2 & 4 & 0 \\
     \textit{GPT-4o (paper)} & \textit{vlm} & \textit{1.00} & \textit{0.90 to 1.00} & \textit{0.22 to 1.00} & \textit{-- (a)} & \textit{-- (a)} & \textit{-- (a)} & \textit{-- (a)} & \textit{-- (a)} & \textit{2} & \textit{30} & \textit{-- (a)} \\

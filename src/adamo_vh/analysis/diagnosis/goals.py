@@ -21,6 +21,7 @@ from adamo_vh.analysis.diagnosis.story import DROP, PICK, Moment, Story, call_te
 from adamo_vh.benchmark.checkers import MOVED_M
 from adamo_vh.benchmark.conditions import Aim, Condition, counted, holds
 from adamo_vh.benchmark.goals import open_goals
+from adamo_vh.engine import ObjectState
 from adamo_vh.record.termination import TerminationReason
 from adamo_vh.record.trajectory import Acted
 
@@ -66,7 +67,7 @@ def _cause(story: Story, condition: Aim, number: int) -> Cause:
     if undone is not None:
         return loop if loop and loop_moves(story, loop) else undone
     if story.held_at(condition.id):
-        return _handled(story, condition, loop)
+        return _handled(story, condition, loop, number)
     return _never_held(story, condition, number)
 
 
@@ -84,9 +85,13 @@ def _undone(story: Story, condition: Aim) -> Cause | None:
     text = f"{name} was as asked after step {met[-1].step}; {call_text(act)} undid it."
     if item is None or start is None:
         return Cause(Code.EXTRA_GOAL, act.step, text, condition.id)
-    is_back = item.support == start.support and item.box.center.distance(start.box.center) < _BACK_M
-    code = Code.PUT_BACK if is_back else Code.EXTRA_GOAL
+    code = Code.PUT_BACK if _is_back(item, start) else Code.EXTRA_GOAL
     return Cause(code, act.step, text, condition.id)
+
+
+def _is_back(item: ObjectState, start: ObjectState) -> bool:
+    """Whether a thing is where it was at the start."""
+    return item.support == start.support and item.box.center.distance(start.box.center) < _BACK_M
 
 
 def _is_met(story: Story, condition: Aim, moment: Moment) -> bool:
@@ -94,7 +99,7 @@ def _is_met(story: Story, condition: Aim, moment: Moment) -> bool:
     return condition.objects <= here and condition.satisfied(moment.state, (story.start,))
 
 
-def _handled(story: Story, condition: Aim, loop: Cause | None) -> Cause:
+def _handled(story: Story, condition: Aim, loop: Cause | None, number: int) -> Cause:
     """The object was in the hand, and is not where it belongs."""
     if loop is not None and loop_moves(story, loop):
         return loop
@@ -102,8 +107,22 @@ def _handled(story: Story, condition: Aim, loop: Cause | None) -> Cause:
     if story.final.body.held != condition.id and puttings:
         if moved := _anchor_moved(story, condition, puttings[-1].moment):
             return moved
+        start = story.moments[0].object(condition.id)
+        if start is not None and _is_back(puttings[-1].item, start):
+            return _given_up(story, condition, number)
         return misplaced(story, condition, puttings[-1])
     return _still_held(story, condition, loop)
+
+
+def _given_up(story: Story, condition: Aim, number: int) -> Cause:
+    """The object was taken, and put back where it stood: nothing came of it.
+
+    Where it was to be brought to something, that is what the agent may have lacked.
+    """
+    anchor = anchor_of(condition)
+    cause = untouched(story, condition.id if anchor is None else anchor, number)
+    name = story.name(condition.id)
+    return replace(cause, text=f"{name} was taken and put back where it stood. {cause.text}")
 
 
 def _anchor_moved(story: Story, condition: Aim, moment: int) -> Cause | None:

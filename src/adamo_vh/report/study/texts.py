@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 
 from adamo_vh.analysis.statistics import Interval
@@ -36,6 +37,8 @@ _TEX = {
     "ρ": r"$\rho$",
     "…": r"\ldots{}",
 }
+_HEAD_WIDTH = 14
+"""Letters in a line of a column's head in LaTeX; an interval has about so many."""
 _FORMULAS = ("=", "+", "-", "@", "\t", "\r")
 """With these a spreadsheet takes a text for a formula."""
 
@@ -112,7 +115,7 @@ def _latex_table(table: Table) -> str:
         f"  \\label{{tab:{re.sub('[^a-z0-9-]', '-', table.name.lower())}}}",
         f"  \\begin{{tabular}}{{{''.join('r' if n else 'l' for n in table.numbers)}}}",
         r"    \toprule",
-        f"    {' & '.join(map(_tex, table.columns))} \\\\",
+        f"    {' & '.join(map(_tex_head, table.columns, table.numbers))} \\\\",
     ]
     for block in table.blocks:
         lines.append(r"    \midrule")
@@ -123,6 +126,13 @@ def _latex_table(table: Table) -> str:
             lines.append(f"    {' & '.join(cells)} \\\\")
     lines += [r"    \bottomrule", r"  \end{tabular}", r"\end{table}"]
     return "\n".join(lines)
+
+
+def _tex_head(name: str, is_number: bool) -> str:
+    """The head of a column, in lines that are no wider than its figures."""
+    lines = [_tex(line) for line in textwrap.wrap(name, _HEAD_WIDTH, break_long_words=False)]
+    side, stacked = "r" if is_number else "l", r"\\".join(lines)
+    return rf"\shortstack[{side}]{{{stacked}}}" if len(lines) > 1 else stacked
 
 
 def comma_separated(table: Table) -> str:
