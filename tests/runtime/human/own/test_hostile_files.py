@@ -237,3 +237,17 @@ def test_bones_that_nobody_knows_are_passed_over():
     bones |= {"leftTentacle": bones["leftHand"], "leftIndex99": bones["spine"], "": {"node": 1}}
     report = own_figure_of(packed(told, binary), "x.glb").report
     assert not {"leftTentacle", "leftIndex99", ""} & {*report.bones}
+
+
+@pytest.mark.parametrize("kind", [5120, 5122])
+def test_bones_with_negative_numbers(kind):
+    told, binary = parts(sound())
+    primitives = (one for mesh in told["meshes"] for one in mesh["primitives"])
+    array = next(
+        one["attributes"]["JOINTS_0"] for one in primitives if "JOINTS_0" in one["attributes"]
+    )
+    accessor = told["accessors"][array]
+    accessor["componentType"] = kind
+    at = told["bufferViews"][accessor["bufferView"]]["byteOffset"] + accessor.get("byteOffset", 0)
+    broken = binary[:at] + b"\xff\xff" + binary[at + 2 :]
+    assert "negative" in refusal(packed(told, broken))

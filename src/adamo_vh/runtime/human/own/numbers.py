@@ -43,14 +43,16 @@ class Numbers:
         return found
 
     def wholes(self, number: int, width: int) -> NDArray[np.int64]:
-        """An array of whole numbers, as indices are.
+        """An array of whole numbers from 0, as indices are.
 
         Raises:
-            Broken: It is not there, or has another shape.
+            Broken: It is not there, has another shape, or holds what can be no index.
         """
         values, _ = self._values(number, width)
         if values.dtype.kind == "f":
             raise Broken(f"array {number} holds fractions where indices belong. {AGAIN}")
+        if values.dtype.kind == "i" and values.min(initial=0) < 0:
+            raise Broken(f"array {number} holds negative numbers where indices belong. {AGAIN}")
         return values.astype(np.int64)
 
     def width(self, number: int) -> int:

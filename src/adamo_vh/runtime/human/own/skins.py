@@ -187,7 +187,7 @@ def _piece(
     else:
         listed = numbers.wholes(primitive.indices, 1)[:, 0]
         faces = listed[: len(listed) - len(listed) % 3].reshape(-1, 3)
-    if len(faces) and (int(faces.max()) >= count or int(faces.min()) < 0):
+    if len(faces) and int(faces.max()) >= count:
         raise Broken(f"{name} has a triangle with a corner that is missing. {AGAIN}")
     if primitive.material is not None and primitive.material >= len(document.materials):
         raise Broken(f"material {primitive.material} is missing. {AGAIN}")
