@@ -64,6 +64,12 @@ CASES: dict[str, tuple[str, Sequence[Said], Code]] = {
     "back on the table": ("T4", [pick(57), drop(57, 0.2, -0.4, 0.78), DONE], Code.WRONG_SUPPORT),
     "half a metre away": ("T5", [pick(4), drop(4, -0.15, -1.25, 0.78), DONE], Code.TOO_FAR),
     "not in a corner": ("T7", [pick(2), drop(2, -1.6, -1.0), DONE], Code.OUTSIDE_AREA),
+    "back where it stood": ("T5", [pick(4), drop(4, -0.17, -0.6, 0.78), DONE], Code.TOO_FAR),
+    "back, and says so": (
+        "T5",
+        [pick(4), drop(4, -0.17, -0.6, 0.78), "I cannot do that."],
+        Code.GAVE_UP,
+    ),
     "kept in the hand": ("T4", [pick(57), DONE], Code.NOT_RELEASED),
     "outside the room": ("T4", [pick(57), *[drop(57, 40.0, 0.0)] * 4], Code.REFUSED),
     "nothing done": ("T8", [("Look", FLOOR_SPOT), DONE], Code.FALSE_CLAIM),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from adamo_vh import action
+from adamo_vh.analysis.claims import claims_success
 from adamo_vh.analysis.diagnosis.cause import Cause
 from adamo_vh.analysis.diagnosis.endings import (
     loop_moves,
@@ -108,14 +109,15 @@ def _handled(story: Story, condition: Aim, loop: Cause | None, number: int) -> C
         if moved := _anchor_moved(story, condition, puttings[-1].moment):
             return moved
         start = story.moments[0].object(condition.id)
-        if start is not None and _is_back(puttings[-1].item, start):
+        is_back = start is not None and _is_back(puttings[-1].item, start)
+        if is_back and not claims_success(story.manifest.config.instruction, story.ended.answer):
             return _given_up(story, condition, number)
         return misplaced(story, condition, puttings[-1])
     return _still_held(story, condition, loop)
 
 
 def _given_up(story: Story, condition: Aim, number: int) -> Cause:
-    """The object was taken, and put back where it stood: nothing came of it.
+    """The object was taken and put back where it stood, and the agent does not say it is done.
 
     Where it was to be brought to something, that is what the agent may have lacked.
     """
