@@ -119,13 +119,13 @@ def matrix() -> Sequence[Any]:
 
 def play_all(folder: Path, episodes: Sequence[Any]) -> Iterator[None]:
     """Play episodes one after the other, as a worker does with one in flight."""
-    from adamo_vh.session.pooling import Engines
-    from adamo_vh.study.playing import play
+    from adamo_vh.study.executor import Finished
+    from adamo_vh.study.worker import Player, Setup
 
-    engines = Engines()
+    player = Player(Setup(folder, frame_cache=False))
     for planned in episodes:
-        with engines.lent(planned.config) as world:
-            play(folder, planned, engine=world)
+        report = player.play(planned)
+        assert isinstance(report, Finished), report
         yield
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,6 +12,7 @@ from numpy.typing import NDArray
 
 from adamo_vh.engine import FLOOR, FurnitureOutline, WorldSurface
 from adamo_vh.geometry import Array, Box, Quaternion, Solid, Vec3
+from adamo_vh.heap import give_back
 from adamo_vh.observation import NOTHING
 from adamo_vh.runtime.assets.asset import Asset, Collider
 from adamo_vh.runtime.embodiment import FOV_Y_RAD
@@ -153,7 +152,7 @@ def build_world(
     add_human(spec, figure)
     model = spec.compile()
     del spec
-    _return_memory()
+    give_back()
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     placed = sorted(scene.objects, key=lambda item: item.id)
@@ -211,12 +210,6 @@ def _furnish(
         surfaces += furniture_surfaces(piece, asset)
         solids += furniture_solids(piece, asset)
     return surfaces, solids
-
-
-def _return_memory() -> None:
-    """Give back what compiling took: glibc keeps some 60 MB of it otherwise."""
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL("libc.so.6").malloc_trim(0)
 
 
 def _seen_by(piece: Furniture, lights: Sequence[Light]) -> Sequence[float] | None:

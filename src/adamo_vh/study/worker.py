@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
 import os
 import threading
 import time
@@ -26,6 +24,7 @@ from adamo_vh.errors import (
     RecordError,
     SceneError,
 )
+from adamo_vh.heap import give_back, share_pools
 from adamo_vh.inference.model import Model
 from adamo_vh.inference.registry import is_remote
 from adamo_vh.inference.remote.gate import Gate, through
@@ -45,6 +44,8 @@ BEAT_S = 2.0
 _SILENT_S = 1800.0
 """Seconds without any event of an episode after which it is taken to hang: more than a provider may
 take for one answer, retries and waits included."""
+_KEPT_S = 10.0
+"""Seconds for which free memory is kept at least."""
 _NO_USE = (ConfigError, ModelConfigError, RecordError, SceneError)
 """What another try would meet again."""
 _IN_USE_S = 10.0
@@ -101,6 +102,7 @@ class Player:
         self._gate = gate or Limiter(setup.folder / LIMITS, setup.rates)
         self._purse = purse or StudyLedger(setup.folder, setup.budget)
         self._pulses: dict[str, Pulse] = {}
+        self._gave_back = time.monotonic()
 
     @property
     def hangs(self) -> bool:
@@ -115,6 +117,14 @@ class Player:
             return self._played(planned, pulse)
         finally:
             del self._pulses[planned.key]
+            self._give_back()
+
+    def _give_back(self) -> None:
+        """Give back what ended episodes took for pictures and prompts; seldom, as it takes 5 ms."""
+        now = time.monotonic()
+        if now - self._gave_back > _KEPT_S:
+            self._gave_back = now
+            give_back()
 
     def _played(self, planned: Planned, pulse: Pulse) -> Report:
         try:
@@ -175,7 +185,7 @@ def work(pipe: Connection, setup: Setup) -> None:
     """
     # Several processes draw faster with one thread each; before anything loads OpenGL.
     os.environ.setdefault("LP_NUM_THREADS", "1")
-    _share_arenas()
+    share_pools()
     lock = threading.Lock()
 
     def send(message: Report | Alive) -> None:
@@ -204,14 +214,3 @@ def work(pipe: Connection, setup: Setup) -> None:
         os._exit(1)
     # Nothing is in flight any more; engines and connections go with the process.
     os._exit(0)
-
-
-def _share_arenas() -> None:
-    """Let all episodes take memory from the same two pools.
-
-    By default glibc gives a pool to every thread, and each keeps what one episode's long prompts
-    once took: with 16 episodes waiting for their model that was 230 MB more.
-    """
-    most_arenas = -8  # M_ARENA_MAX of malloc.h
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL("libc.so.6").mallopt(most_arenas, 2)

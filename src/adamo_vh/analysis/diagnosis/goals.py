@@ -18,7 +18,7 @@ from adamo_vh.analysis.diagnosis.finding import Code
 from adamo_vh.analysis.diagnosis.placing import anchor_of, misplaced, with_object
 from adamo_vh.analysis.diagnosis.refusals import is_refused, refusal, streak
 from adamo_vh.analysis.diagnosis.sight import on_text
-from adamo_vh.analysis.diagnosis.story import DROP, PICK, Moment, Story, call_text
+from adamo_vh.analysis.diagnosis.story import DROP, PICK, Moment, Putting, Story, call_text
 from adamo_vh.benchmark.checkers import MOVED_M
 from adamo_vh.benchmark.conditions import Aim, Condition, counted, holds
 from adamo_vh.benchmark.goals import open_goals
@@ -108,16 +108,24 @@ def _handled(story: Story, condition: Aim, loop: Cause | None, number: int) -> C
     if story.final.body.held != condition.id and puttings:
         if moved := _anchor_moved(story, condition, puttings[-1].moment):
             return moved
-        start = story.moments[0].object(condition.id)
-        is_back = start is not None and _is_back(puttings[-1].item, start)
-        if is_back and not claims_success(story.manifest.config.instruction, story.ended.answer):
+        if _was_given_up(story, puttings[-1]):
             return _given_up(story, condition, number)
         return misplaced(story, condition, puttings[-1])
     return _still_held(story, condition, loop)
 
 
+def _was_given_up(story: Story, putting: Putting) -> bool:
+    """Whether a thing was put back where it stood, and on purpose, by one who does not say done."""
+    start = story.moments[0].object(putting.item.id)
+    if start is None or not _is_back(putting.item, start):
+        return False
+    aim = putting.aim
+    meant = aim is None or aim.horizontal_distance(start.box.center) < _BACK_M
+    return meant and not claims_success(story.manifest.config.instruction, story.ended.answer)
+
+
 def _given_up(story: Story, condition: Aim, number: int) -> Cause:
-    """The object was taken and put back where it stood, and the agent does not say it is done.
+    """The object was taken and put back where it stood: nothing came of it.
 
     Where it was to be brought to something, that is what the agent may have lacked.
     """
