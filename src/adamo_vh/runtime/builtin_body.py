@@ -142,7 +142,7 @@ class BuiltinBody:
             return self._cancelled(start)
         facing, _ = self.stance.facing(target)
         holding = replace(facing, held=object_id)
-        motion = partial(pick_motion, self.stance, holding, target)
+        motion = partial(pick_motion, self.stance, holding, target, depth=self._depth)
         self._move(self._stage.perform(holding, motion, object_id))
         if self.stance.held is None:
             return self._cancelled(start)
@@ -168,7 +168,7 @@ class BuiltinBody:
             return self._cancelled(start)
         facing, _ = self.stance.facing(spot.center)
         free = replace(facing, held=None)
-        motion = partial(drop_motion, self.stance, free, spot.center)
+        motion = partial(drop_motion, self.stance, free, spot.center, depth=self._depth)
         self._move(self._stage.perform(free, motion, held, spot.center))
         if self.stance.held is not None:
             return self._cancelled(start)
@@ -186,6 +186,10 @@ class BuiltinBody:
         self.said.append(text)
 
     # --- parts of the actions ---------------------------------------------------------------
+
+    def _depth(self, middles: Array, radius_m: float) -> Array:
+        """How deep balls are in furniture."""
+        return physics.gathered(self._world.solids).depth(middles, radius_m)
 
     def obstacles(self, excluded: int | None) -> list[Solid]:
         """Everything that something put down must keep clear of, but one object."""

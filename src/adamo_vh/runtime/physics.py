@@ -205,9 +205,10 @@ def _distances(world: CompiledWorld, start: Array, directions: Array, ignored: i
 
 def line_is_free(world: CompiledWorld, start: Vec3, end: Vec3) -> bool:
     """Whether no furniture is between two points."""
-    return not _gathered(world.solids).block(start, end)
+    return not gathered(world.solids).block(start, end)
 
 
 @lru_cache(maxsize=8)
-def _gathered(solids: tuple[Solid, ...]) -> Solids:
+def gathered(solids: tuple[Solid, ...]) -> Solids:
+    """Prisms as arrays; kept for the next time."""
     return Solids.of(solids)

@@ -64,6 +64,20 @@ class Solids:
         half = self.halves - skin_m
         return np.array([(np.abs(self._local(p)) < half).all(axis=1).any() for p in points])
 
+    def depth(self, points: Array, radius_m: float) -> Array:
+        """How deep balls are in the prism that they are deepest in; 0 outside.
+
+        Args:
+            points: (N, 3) their middles, metres.
+            radius_m: Theirs.
+
+        Returns:
+            (N,) metres.
+        """
+        half = self.halves + radius_m
+        inside = [(half - np.abs(self._local(p))).min(axis=1).max(initial=0.0) for p in points]
+        return np.array(inside)
+
     def block(self, start: Vec3, end: Vec3) -> bool:
         """Whether a straight line passes through any prism, not counting a skin of 1 cm."""
         half = self.halves - 0.01

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from adamo_vh.geometry import Array
 from adamo_vh.runtime.human.anatomy import eyes, grip, turned
 from adamo_vh.runtime.human.closing import FINGER_JOINTS
+from adamo_vh.runtime.human.elbow import Depth, clear_swing, swung
 from adamo_vh.runtime.human.grasp import Grip
 from adamo_vh.runtime.human.ik import arm_to, hand_to
 from adamo_vh.runtime.human.postures import CARRY, carrying, gazing, helping, standing
@@ -20,6 +21,8 @@ from adamo_vh.runtime.human.stretch import Bend, Stretch, stretch_to
 
 _GRASP_S = 0.36
 """How long the hand stays at the target to close or open."""
+_NEAR = (0.7, 0.85, 1.0)
+"""Shares of the way at which the arm is kept out of furniture."""
 _ON_THE_WAY_M = (0.88, 1.02, 1.14, 1.32)
 """Height of the hand in front of the body, on its way to 0.7, 1.0, 1.3 and 2.0 m."""
 _MIRROR = np.array([1.0, -1.0, 1.0])
@@ -39,6 +42,17 @@ class Handling:
     """Whether the hand comes back full; else it goes out full."""
     grip: Grip = field(default_factory=Grip)
     """How the hand holds the thing."""
+    swing_rad: float = 0.0
+    """How far the elbow is swung aside at the target; see `elbow`."""
+
+    def clear(self, depth: Depth) -> Handling:
+        """The same reach with its elbow where the arm is least in what is solid.
+
+        Args:
+            depth: Of balls whose middles are in the frame of the body.
+        """
+        moments = (self.pose(self.way_s * part) for part in _NEAR)
+        return replace(self, swing_rad=clear_swing(moments, depth))
 
     @cached_property
     def stretch(self) -> Stretch:
@@ -116,6 +130,7 @@ class Handling:
             solved, _ = arm_to(turned(body, {"hand_r": wrist}), way)
         else:
             solved, _ = hand_to(body, way, turn, offset)
+        solved = swung(solved, self.swing_rad * along)
         if full:
             return solved
         weight = float(eased(part / 0.6))

@@ -150,7 +150,7 @@ def hand_to(
         forearm = joint_frames(pose)[1][INDEX[f"forearm_{hand}"]]
         wrist = rotation_vectors(forearm.T @ turn)
         # Far away the wrist gives way, so that the arm is long enough.
-        most = _WRIST_RAD * max(0.0, 1.0 - gap / _GIVE_WAY_M)
+        most = WRIST_RAD * max(0.0, 1.0 - gap / _GIVE_WAY_M)
         angle = float(np.linalg.norm(wrist))
         turned_so = forearm @ from_rotation_vectors(wrist * (most / max(most, angle, 1e-9)))
         pose = turned(pose, {joint: forearm.T @ turned_so})
@@ -159,7 +159,7 @@ def hand_to(
 
 
 _TRIES = 4
-_WRIST_RAD = np.radians(92.0)
+WRIST_RAD = np.radians(92.0)
 """How far a hand can be turned away from its forearm, whose own turn is the wrist's here."""
 _GIVE_WAY_M = 0.12
 

@@ -17,6 +17,7 @@ import numpy as np
 from adamo_vh.geometry import Array, Vec3, wrap_angle
 from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.anatomy import eyes, grip
+from adamo_vh.runtime.human.elbow import Depth
 from adamo_vh.runtime.human.gait import Gait, gait
 from adamo_vh.runtime.human.grasp import Grip, Thing
 from adamo_vh.runtime.human.handling import Handling
@@ -199,7 +200,13 @@ def walk_motion(start: Stance, path: Path, end: Stance, thing: Thing | None = No
     return _on_foot(start, end, steps, duration, gaze, thing)
 
 
-def pick_motion(start: Stance, end: Stance, target: Vec3, thing: Thing | None = None) -> Motion:
+def pick_motion(
+    start: Stance,
+    end: Stance,
+    target: Vec3,
+    thing: Thing | None = None,
+    depth: Depth | None = None,
+) -> Motion:
     """Turn to a thing, reach for it, take it and bring it in front of the body.
 
     Args:
@@ -207,11 +214,18 @@ def pick_motion(start: Stance, end: Stance, target: Vec3, thing: Thing | None = 
         end: The state after, facing the target and holding it.
         target: Where the hand takes it, in the world; within reach from `end.position`.
         thing: Its outline, if known.
+        depth: How deep balls in the world are in furniture, which the arm is to keep out of.
     """
-    return _handle(start, end, target, thing, "grasp")
+    return _handle((start, end), target, thing, "grasp", depth)
 
 
-def drop_motion(start: Stance, end: Stance, target: Vec3, thing: Thing | None = None) -> Motion:
+def drop_motion(
+    start: Stance,
+    end: Stance,
+    target: Vec3,
+    thing: Thing | None = None,
+    depth: Depth | None = None,
+) -> Motion:
     """Turn to a spot, put the held thing there and let the arm hang.
 
     Args:
@@ -219,17 +233,26 @@ def drop_motion(start: Stance, end: Stance, target: Vec3, thing: Thing | None = 
         end: The state after, facing the spot, with an empty hand.
         target: Where the middle of the thing comes to, in the world.
         thing: Its outline, if known.
+        depth: How deep balls in the world are in furniture, which the arm is to keep out of.
     """
-    return _handle(start, end, target, thing, "release")
+    return _handle((start, end), target, thing, "release", depth)
 
 
 def _handle(
-    start: Stance, end: Stance, target: Vec3, thing: Thing | None, kind: Literal["grasp", "release"]
+    stances: tuple[Stance, Stance],
+    target: Vec3,
+    thing: Thing | None,
+    kind: Literal["grasp", "release"],
+    depth: Depth | None,
 ) -> Motion:
+    start, end = stances
     facing = replace(end, held=start.held)
     local = about_z(-end.heading_rad) @ (target - end.position).array()
     held = Grip.of(thing, end.heading_rad)
     hand = Handling(local, line_of_gaze(end), takes=kind == "grasp", grip=held)
+    if depth is not None:
+        place, turn = end.position.array(), about_z(end.heading_rad).T
+        hand = hand.clear(lambda middles, radius_m: depth(middles @ turn + place, radius_m))
 
     def inside(time_s: float) -> BodyFrame:
         body = end if time_s >= hand.event_s - 1e-9 else facing
