@@ -22,6 +22,14 @@ test("a run is replayed, scrubbed and stepped through", async ({ page }) => {
   expect(told.triangles).toBeLessThanOrEqual(250_000);
 });
 
+test("a long story does not lengthen the page", async ({ page }) => {
+  await page.setViewportSize({ width: 1440, height: 600 });
+  await page.goto(`?debug#run=${encodeURIComponent(RUN)}`);
+  await drawn(page);
+  await expect(page.locator(".said").last()).toBeAttached();
+  expect(await page.evaluate(() => document.documentElement.scrollHeight)).toBe(600);
+});
+
 test("text of a record is shown as text alone", async ({ page }) => {
   await page.goto(`#run=${encodeURIComponent(EVIL)}`);
   await expect(page.locator(".turns")).toContainText("<img src=x");
