@@ -5,6 +5,8 @@ import type { Phoneme } from "../view/face.ts";
 import { Ear, loudness, RATE, wav } from "./sound.ts";
 
 const LOOK_MS = 40;
+/** Two seconds: so long a picture may take to draw before a part of what is said is lost. */
+const KEPT_SAMPLES = 32768;
 /** So much before speech was noticed belongs to it. */
 const BEFORE_S = 0.3;
 const LONGEST_S = 30;
@@ -34,7 +36,7 @@ export class Microphone {
     private readonly listener: Listener,
   ) {
     const analyser = context.createAnalyser();
-    analyser.fftSize = 2048;
+    analyser.fftSize = KEPT_SAMPLES;
     context.createMediaStreamSource(stream).connect(analyser);
     const fresh = new Float32Array(analyser.fftSize);
     let last = context.currentTime;
