@@ -267,11 +267,11 @@ def test_an_episode_that_broke_goes_on_from_there(tmp_path: Path, engine: Builti
         adamo_vh.resume_episode(tmp_path)
 
 
-def test_two_commands_in_one_second_get_a_folder_each(tmp_path: Path) -> None:
+def test_two_commands_in_one_second_get_a_folder_each(tmp_path: Path, bare_scene: str) -> None:
     script = tmp_path / "said.json"
     script.write_text('[{"note": "Nothing to do."}]')
-    command = [sys.executable, "-m", "adamo_vh", "run", "--task", "T1", "--resolution", "160x90"]
-    command += ["--model", f"scripted:{script}"]
+    command = [sys.executable, "-m", "adamo_vh", "run", "Wait", "--scene", bare_scene]
+    command += ["--resolution", "160x90", "--model", f"scripted:{script}"]
     time.sleep(1 - time.time() % 1)
     runs = [
         subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
