@@ -10,7 +10,7 @@ import pytest
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.runtime import physics
 from adamo_vh.runtime.builtin import BuiltinEngine
-from adamo_vh.runtime.shadows import SHADOW_MAP_PX, ShadowMap, _area
+from adamo_vh.runtime.shadows import SHADOW_MAP_PX, ShadowMap, _area, _projection
 
 SMALL = (320, 180)
 CUP = 45
@@ -152,3 +152,18 @@ def test_a_thing_that_moves_on_leaves_no_shadow_behind(
     once = seen(away)
     assert (seen(cup, high, cup + Vec3(0.1, 0.05, 0.2), away) == once).all()
     physics.place(engine.world, CUP, cup)
+
+
+@pytest.mark.parametrize("x", [-4.0, -1.0, 0.0, 1.0, 4.0])
+def test_the_part_of_the_map_that_is_drawn_on_holds_all_of_a_ball(x: float) -> None:
+    project, see = _projection(120.0, 0.1, 20.0), np.eye(4)
+    ball = np.array([[x, 0.5 * x, -3.0, 1.0]])
+    area = _area(ball, project, see)
+    assert area is not None
+    ways = np.random.default_rng(0).normal(size=(20_000, 3))
+    skin = ball[0, :3] + ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    flat = skin[:, :2] * [project[0, 0], project[1, 1]] / -skin[:, 2:]
+    pixels = np.clip((flat + 1) / 2 * SHADOW_MAP_PX, 0, SHADOW_MAP_PX)
+    first, size = np.array(area[:2]), np.array(area[2:])
+    assert (pixels >= first).all()
+    assert (pixels <= first + size).all()

@@ -111,11 +111,12 @@ def _area(balls: Array, project: Array, see: Array) -> tuple[int, int, int, int]
     if (away <= 2 * radius).any():
         return 0, 0, side, side
     flat = places[:, :2] * [project[0, 0], project[1, 1]]
-    # The widest that a ball may be seen at: as if its middle were at its nearest.
+    # The widest that a ball may be seen at: as if each side of it were at its nearest, or at its
+    # farthest where that is nearer to the middle of the map.
     reach = radius[:, None] * [project[0, 0], project[1, 1]]
-    near = (away - radius)[:, None]
-    low = np.minimum((flat - reach) / near, (flat - reach) / away[:, None]).min(axis=0)
-    high = np.maximum((flat + reach) / near, (flat + reach) / away[:, None]).max(axis=0)
+    near, far = (away - radius)[:, None], (away + radius)[:, None]
+    low = np.minimum((flat - reach) / near, (flat - reach) / far).min(axis=0)
+    high = np.maximum((flat + reach) / near, (flat + reach) / far).max(axis=0)
     first = np.clip(np.floor((low + 1) / 2 * side) - 2, 0, side).astype(int)
     last = np.clip(np.ceil((high + 1) / 2 * side) + 2, 0, side).astype(int)
     wide, tall = (int(size) for size in np.maximum(last - first, 0))
