@@ -65,7 +65,7 @@ export class Room {
       mesh.castShadow = ![...SHELL, ...SHADES].includes(name);
       // What stands before the walls is drawn before them.
       mesh.renderOrder = SHELL.includes(name) ? 1 : 0;
-      // They are all around: to find out how far each reaches takes longer than to draw it.
+      // For the first picture, to find out how far each reaches takes longer than to draw it.
       mesh.frustumCulled = false;
     }
     this.group.add(joined);
@@ -102,6 +102,11 @@ export class Room {
   /** Give everything its full look, or its plain one. */
   dress(isFull: boolean): void {
     for (const { mesh, plain, full } of this.looks) mesh.material = isFull ? full : plain;
+  }
+
+  /** From now on, draw only what is in view of what does not move. */
+  cull(): void {
+    for (const mesh of this.fixed) mesh.frustumCulled = true;
   }
 
   /** Light things anew that were moved, for the plain look. */

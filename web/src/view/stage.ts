@@ -230,6 +230,7 @@ export class Stage {
     // By the next picture the first one is on the screen.
     requestAnimationFrame(() => {
       this.stats.firstMs = performance.now();
+      this.room.cull();
       if (!this.isPlain) void this.enrich();
     });
   }
