@@ -23,6 +23,7 @@ import functools
 import gc
 import json
 import os
+import re
 import statistics
 import subprocess
 import sys
@@ -209,10 +210,11 @@ class SlowMind(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         """Let the model look round, and then say that it is done."""
-        request = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        request = self.rfile.read(int(self.headers["Content-Length"]))
         self.times.append(time.perf_counter())
         time.sleep(THINKING_S)
-        turns = sum(message["role"] == "assistant" for message in request["messages"])
+        # To read all of 5 MB would take the processors that the workers need.
+        turns = len(re.findall(rb'"role": ?"assistant"', request))
         self.times.append(time.perf_counter())
         said: dict[str, Any] = {"role": "assistant", "content": "I look round."}
         if turns < CALLS - 1:
