@@ -9,21 +9,14 @@ from __future__ import annotations
 import base64
 import json
 import sys
-import tempfile
 import time
 import urllib.request
 from pathlib import Path
 
 from benchmarks.pictures import Tab, browser
+from benchmarks.studio import served
 
-from adamo_vh.service.app import serving
-from adamo_vh.service.hosting import Host, Terms
-from adamo_vh.studio.editing import Editor
-from adamo_vh.studio.face import Studio, studio_face
-from adamo_vh.studio.library import Library
-from adamo_vh.studio.meshes import Meshes
-from adamo_vh.studio.offer import Offer
-from adamo_vh.studio.rooms import Rooms
+from adamo_vh.studio.rooms import RoomTerms
 
 FILE = Path(__file__).parents[1] / "docs" / "images" / "studio.jpg"
 SAID = "Place the glass next to the tape"
@@ -75,14 +68,11 @@ def _click(tab: Tab, words: str) -> None:
 def main() -> None:
     """Write it."""
     file = Path(sys.argv[1]) if len(sys.argv) > 1 else FILE
-    with tempfile.TemporaryDirectory() as folder:
-        out, offer = Path(folder), Offer()
-        editor = Editor(out / "scenes", offer)
-        studio = Studio(offer, Library([out]), Rooms(out, offer), Meshes(), editor)
-        host = Host(out / "served", Terms())
-        with serving(host, faces=(studio_face(studio),)) as url:
-            file.write_bytes(picture(url))
-        host.close_all()
+
+    def photograph(url: str) -> None:
+        file.write_bytes(picture(url))
+
+    served(photograph, resolution=RoomTerms().resolution)
     print(file)
 
 

@@ -152,6 +152,7 @@ def build_world(
     add_human(spec, figure)
     model = spec.compile()
     del spec
+    # Compiling took some 60 MB.
     give_back()
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
