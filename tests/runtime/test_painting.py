@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
+import sys
+import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,6 +17,7 @@ from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.observation import NOTHING
 from adamo_vh.runtime.builtin import BuiltinEngine
 from adamo_vh.runtime.graphics import in_graphics_thread, open_gl
+from adamo_vh.runtime.opengl import call
 
 SMALL = (320, 180)
 PLACES = ((0.0, 0.0), (1.4, -1.2), (-1.5, 1.0))
@@ -204,3 +208,44 @@ def test_a_picture_grows_and_shrinks(engine: BuiltinEngine) -> None:
     assert large.rgb.shape == (360, 640, 3)
     assert (again.rgb == small.rgb).all()
     assert set(np.unique(small.id_layers[0])) - set(np.unique(large.id_layers[0])) == set()
+
+
+@pytest.fixture
+def many_small_arrays() -> Iterator[None]:
+    """Other threads, which go on at every chance, make arrays of a matrix's size and fill them."""
+    done = threading.Event()
+
+    def make() -> None:
+        while not done.is_set():
+            kept = [np.full(16, 7.0, np.float32) for _ in range(200)]
+            kept += [np.full(2, 99, np.float32) for _ in range(200)]
+
+    usual = sys.getswitchinterval()
+    threads = [threading.Thread(target=make) for _ in range(3)]
+    sys.setswitchinterval(1e-6)
+    for thread in threads:
+        thread.start()
+    yield
+    done.set()
+    for thread in threads:
+        thread.join()
+    sys.setswitchinterval(usual)
+
+
+def test_other_threads_do_not_write_over_what_is_drawn_with(
+    engine: BuiltinEngine, request: pytest.FixtureRequest
+) -> None:
+    def pictures(count: int) -> set[bytes]:
+        engine.stage.picture(engine.body.stance, engine.body.stance.camera(64, 36))
+        camera = engine.body.stance.camera(160, 90)
+        return {engine.stage.picture(engine.body.stance, camera).tobytes() for _ in range(count)}
+
+    alone = pictures(1)
+    request.getfixturevalue("many_small_arrays")
+    assert pictures(12) == alone
+
+
+def test_the_address_of_an_array_is_not_taken_without_the_array() -> None:
+    numbers = np.zeros(16, np.float32)
+    with pytest.raises(ctypes.ArgumentError, match="not the address"):
+        call("LoadMatrixf", "p")(numbers.ctypes.data)

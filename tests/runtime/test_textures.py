@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from itertools import pairwise
 
 import numpy as np
@@ -40,11 +39,11 @@ def test_every_texture_arrives_whole(engine: BuiltinEngine) -> None:
         for texture in range(model.ntex):
             name = int(renderer._painter.context.texture[texture])
             call("BindTexture", "uu")(gl.TEXTURE_2D, name)
-            size = (ctypes.c_int * 2)()
-            for i, what in enumerate((_TEXTURE_WIDTH, _TEXTURE_HEIGHT)):
-                ask = call("GetTexLevelParameteriv", "uiup")
-                ask(gl.TEXTURE_2D, 0, what, ctypes.addressof(size) + 4 * i)
-            found.append((size[0], size[1]))
+            width, height = np.zeros(1, np.int32), np.zeros(1, np.int32)
+            ask = call("GetTexLevelParameteriv", "uiup")
+            ask(gl.TEXTURE_2D, 0, _TEXTURE_WIDTH, width)
+            ask(gl.TEXTURE_2D, 0, _TEXTURE_HEIGHT, height)
+            found.append((int(width[0]), int(height[0])))
         return found
 
     expected = list(zip(model.tex_width.tolist(), model.tex_height.tolist(), strict=True))

@@ -37,9 +37,7 @@ SHORT = {"resolution": TINY, "limits": adamo_vh.Limits(max_steps=8)}
 PLATE, CUP = 57, 45
 
 
-# Now and then a frame of S2 lacks a shadow on a busy machine, while all states are right. These
-# tests find it; it is not explained yet, and must not stop every other change.
-@pytest.fixture(params=["s1", pytest.param("s2", marks=pytest.mark.slow)])
+@pytest.fixture(params=["s1", "s2"])
 def lender(request: pytest.FixtureRequest) -> Lender:
     made: BuiltinEngine = request.getfixturevalue(f"{request.param}_engine")
     made.reset(0)

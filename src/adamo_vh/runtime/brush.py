@@ -49,7 +49,7 @@ class Program:
         call("UseProgram", "u")(self.name)
         call("Uniform1i", "ii")(self._lights, lights)
         call("Uniform1i", "ii")(self._caster, caster)
-        call("UniformMatrix4fv", "iibp")(self._to_shadow, 1, 1, gl.address(matrix))
+        call("UniformMatrix4fv", "iibp")(self._to_shadow, 1, 1, matrix)
 
 
 Programs = Mapping[bool, Program]
@@ -138,7 +138,7 @@ class Brush:
     def _put_geom(self, part: int, shape: int) -> None:
         call("PushMatrix")()
         call("Translatef", "fff")(*self.at[part].tolist())
-        call("MultMatrixf", "p")(gl.address(self.turns[part]))
+        call("MultMatrixf", "p")(self.turns[part])
         call("CallList", "u")(shape)
         call("PopMatrix")()
 
@@ -173,4 +173,4 @@ class Brush:
 def _upload(buffer: int, values: NDArray[np.float32]) -> None:
     call("BindBuffer", "uu")(gl.ARRAY_BUFFER, int(buffer))
     size = gl.ARRAY_BUFFER, values.nbytes
-    call("BufferData", "uzpu")(*size, gl.address(values), gl.STREAM_DRAW)
+    call("BufferData", "uzpu")(*size, values, gl.STREAM_DRAW)

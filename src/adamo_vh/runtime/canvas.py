@@ -59,7 +59,7 @@ class Canvas:
     def draw_into(self, *which: int) -> None:
         """Draw into one of the pictures, or both."""
         targets = [place if i in which else gl.NONE for i, place in enumerate(_PICTURES)]
-        call("DrawBuffers", "ip")(len(targets), gl.address(np.array(targets, np.uint32)))
+        call("DrawBuffers", "ip")(len(targets), np.array(targets, np.uint32))
 
     def read(self, which: int) -> NDArray[np.uint8]:
         """(H, W, 4) one of the pictures, bottom row first; the next `read` writes over it."""
@@ -67,5 +67,5 @@ class Canvas:
         height_px, width_px = pixels.shape[:2]
         call("ReadBuffer", "u")(_PICTURES[which])
         place = (0, 0, width_px, height_px)
-        call("ReadPixels", "iiiiuup")(*place, gl.RGBA, gl.UNSIGNED_BYTE, gl.address(pixels))
+        call("ReadPixels", "iiiiuup")(*place, gl.RGBA, gl.UNSIGNED_BYTE, pixels)
         return pixels

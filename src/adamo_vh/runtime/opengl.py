@@ -12,7 +12,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from adamo_vh.errors import RenderingError
 
@@ -47,6 +46,24 @@ COMPILE_STATUS, LINK_STATUS = 0x8B81, 0x8B82
 FRAMEBUFFER, RENDERBUFFER, FRAMEBUFFER_COMPLETE = 0x8D40, 0x8D41, 0x8CD5
 LOWER_LEFT, ZERO_TO_ONE = 0x8CA1, 0x935F
 
+
+class _Memory(ctypes.c_void_p):
+    """What a call takes as an address: an array of numpy, something of ctypes, or None.
+
+    It is held until the call returns. Numbers are refused: the address of an array does not keep
+    the array, and while the call runs, other threads do, too, and may be given its memory.
+    """
+
+    @classmethod
+    def from_param(cls, value: Any) -> Any:
+        if isinstance(value, int):
+            raise TypeError("OpenGL takes what lies at an address, not the address.")
+        if isinstance(value, np.ndarray):
+            assert value.flags.c_contiguous
+            return ctypes.c_void_p(value.ctypes.data)
+        return ctypes.c_void_p.from_param(value)
+
+
 _KINDS = {
     "b": ctypes.c_ubyte,
     "i": ctypes.c_int,
@@ -54,7 +71,7 @@ _KINDS = {
     "f": ctypes.c_float,
     "d": ctypes.c_double,
     "z": ctypes.c_ssize_t,
-    "p": ctypes.c_void_p,
+    "p": _Memory,
 }
 
 
@@ -64,7 +81,8 @@ def call(name: str, takes: str = "", gives: str = "") -> Callable[..., Any]:
 
     Args:
         name: Without the prefix gl.
-        takes: Its arguments: b, i, u, f, d as in OpenGL's own names, z a size, p an address.
+        takes: Its arguments: b, i, u, f, d as in OpenGL's own names, z a size, p memory:
+            a contiguous array of numpy, something of ctypes, or None.
         gives: What it returns, empty for nothing.
 
     Raises:
@@ -84,12 +102,6 @@ def call(name: str, takes: str = "", gives: str = "") -> Callable[..., Any]:
     return found  # type: ignore[no-any-return]
 
 
-def address(values: NDArray[Any]) -> int:
-    """Where an array lies in memory; it must live until the call returns."""
-    assert values.flags.c_contiguous
-    return values.ctypes.data
-
-
 def floats(*values: float) -> Any:
     """Numbers for a call that takes an address."""
     return (ctypes.c_float * len(values))(*values)
@@ -98,7 +110,7 @@ def floats(*values: float) -> Any:
 def made(kind: str, count: int = 1) -> tuple[int, ...]:
     """New objects of a kind: Textures, Framebuffers, Renderbuffers."""
     names = np.zeros(count, np.uint32)
-    call(f"Gen{kind}", "ip")(count, address(names))
+    call(f"Gen{kind}", "ip")(count, names)
     return tuple(int(name) for name in names)
 
 
@@ -112,7 +124,7 @@ def program(vertex: str, fragment: str) -> int:
     for kind, source in ((VERTEX_SHADER, vertex), (FRAGMENT_SHADER, fragment)):
         shader = call("CreateShader", "u", "u")(kind)
         text = ctypes.c_char_p(source.encode())
-        call("ShaderSource", "uipp")(shader, 1, ctypes.addressof(text), None)
+        call("ShaderSource", "uipp")(shader, 1, ctypes.byref(text), None)
         call("CompileShader", "u")(shader)
         _check(shader, "Shader", COMPILE_STATUS)
         call("AttachShader", "uu")(linked, shader)
@@ -124,10 +136,10 @@ def program(vertex: str, fragment: str) -> int:
 
 def _check(name: int, kind: str, status: int) -> None:
     good = ctypes.c_int()
-    call(f"Get{kind}iv", "uup")(name, status, ctypes.addressof(good))
+    call(f"Get{kind}iv", "uup")(name, status, ctypes.byref(good))
     if not good.value:
         log = ctypes.create_string_buffer(2000)
-        call(f"Get{kind}InfoLog", "uipp")(name, len(log), None, ctypes.addressof(log))
+        call(f"Get{kind}InfoLog", "uipp")(name, len(log), None, log)
         raise RenderingError(f"OpenGL refuses what ADAMO draws with: {log.value.decode()!r}.")
 
 

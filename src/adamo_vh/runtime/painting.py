@@ -226,7 +226,7 @@ def _aim(scene: mujoco.MjvScene, size: tuple[int, int]) -> tuple[Array, tuple[fl
     call("Frustum", "dddddd")(-side, side, left.frustum_bottom, top, near, far)
     call("MatrixMode", "u")(gl.MODELVIEW)
     eye = view_matrix((left.pos + right.pos) / 2, left.forward, left.up)
-    call("LoadMatrixf", "p")(gl.address(np.ascontiguousarray(eye.T)))
+    call("LoadMatrixf", "p")(np.ascontiguousarray(eye.T))
     return eye.astype(float), (math.atan(side / near), math.atan(top / near))
 
 

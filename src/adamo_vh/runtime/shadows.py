@@ -66,9 +66,9 @@ class ShadowMap:
         """
         project, see = _projection(*view), _look(light)
         call("MatrixMode", "u")(gl.PROJECTION)
-        call("LoadMatrixf", "p")(gl.address(np.ascontiguousarray(project.T, np.float32)))
+        call("LoadMatrixf", "p")(np.ascontiguousarray(project.T, np.float32))
         call("MatrixMode", "u")(gl.MODELVIEW)
-        call("LoadMatrixf", "p")(gl.address(np.ascontiguousarray(see.T, np.float32)))
+        call("LoadMatrixf", "p")(np.ascontiguousarray(see.T, np.float32))
         # A border of one pixel stays empty: what lies outside of the map is lit.
         call("Viewport", "iiii")(1, 1, SHADOW_MAP_PX - 2, SHADOW_MAP_PX - 2)
         call("Disable", "u")(gl.CULL_FACE)

@@ -53,9 +53,7 @@ def upload(model: mujoco.MjModel, context: mujoco.MjrContext) -> None:
         kind, stored = _FORMATS[channels]
         for level, smaller in enumerate(halved(picture)):
             size = level, stored, smaller.shape[1], smaller.shape[0], 0
-            call("TexImage2D", "uiiiiiuup")(
-                gl.TEXTURE_2D, *size, kind, gl.UNSIGNED_BYTE, gl.address(smaller)
-            )
+            call("TexImage2D", "uiiiiiuup")(gl.TEXTURE_2D, *size, kind, gl.UNSIGNED_BYTE, smaller)
 
 
 def halved(picture: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
