@@ -155,16 +155,20 @@ def append_line(path: Path, line: bytes) -> None:
     Raises:
         FileError: It cannot be written; the file holds whole lines as before.
     """
-    with naming("written", path), path.open("ab", buffering=0) as file:
-        before = os.fstat(file.fileno()).st_size
+    with naming("written", path):
+        file = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
         try:
-            rest = memoryview(line + b"\n")
-            while rest:
-                rest = rest[file.write(rest) :]
-        except BaseException:
-            with suppress(OSError):
-                file.truncate(before)
-            raise
+            before = os.fstat(file).st_size
+            try:
+                rest = memoryview(line + b"\n")
+                while rest:
+                    rest = rest[os.write(file, rest) :]
+            except BaseException:
+                with suppress(OSError):
+                    os.ftruncate(file, before)
+                raise
+        finally:
+            os.close(file)
 
 
 def read_text(path: str | Path, *, max_bytes: int = _MAX_BYTES) -> str:

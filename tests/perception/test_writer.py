@@ -11,7 +11,7 @@ from adamo_vh.action_server import LocalActionServer
 from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject
 from adamo_vh.perception import PerceptionConfig, TextForm
-from adamo_vh.perception.writer import Told, Wording, view_now, whole_state
+from adamo_vh.perception.writer import SymbolicState, Told, Wording, view_now
 from adamo_vh.runtime.builtin import BuiltinEngine
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -24,7 +24,7 @@ VIEW = Observation(Frame(b"", "image/png", 64, 36), (PLATE,), (), AGENT, CAMERA)
 
 
 def test_the_whole_state_is_as_agreed() -> None:
-    told = whole_state(VIEW, AGENT, Wording(TextForm.PAPER))
+    told = SymbolicState(VIEW, Wording(TextForm.PAPER)).text(AGENT)
     assert told + "\n" == (GOLDEN / "symbolic_state.md").read_text(encoding="utf-8")
 
 

@@ -307,9 +307,18 @@ def record_json(record: Manifest | EpisodeResult) -> bytes:
     return _codec(type(record)).dump_json(record, indent=1)
 
 
-def write_record(folder: Path, name: str, record: Manifest | EpisodeResult) -> None:
-    """Write a record into a run folder, whole or not at all."""
-    write_whole(folder / name, record_json(record), durable=True)
+def write_record(
+    folder: Path, name: str, record: Manifest | EpisodeResult, *, durable: bool = True
+) -> None:
+    """Write a record into a run folder, whole or not at all.
+
+    Args:
+        folder: The run folder.
+        name: Of the file.
+        record: What it holds.
+        durable: See `write_whole`.
+    """
+    write_whole(folder / name, record_json(record), durable=durable)
 
 
 def read_manifest(folder: Path) -> Manifest:

@@ -21,8 +21,8 @@ def clean_arguments(arguments: Mapping[str, Any]) -> dict[str, Any] | None:
     if _is_deeper(arguments, _DEEPEST):
         return None
     try:
-        return read_arguments(dump_arguments(arguments))
-    except (TypeError, ValueError, RecursionError):
+        return _encodable(dict(arguments))
+    except (TypeError, RecursionError):
         return None
 
 

@@ -50,16 +50,25 @@ class Wording:
         return agent_lines(agent, self.form)
 
 
-def whole_state(view: Observation, agent: AgentState, wording: Wording) -> str:
-    """All of it: objects and points of a view, and the body now."""
-    return render_from(
-        "adamo_vh.perception.prompts",
-        "symbolic_state",
-        view="frame" if wording.boxes else "view",
-        objects=wording.objects(view.objects),
-        points=wording.points(view.points),
-        agent=wording.agent(agent),
-    )
+class SymbolicState:
+    """All of it: objects and points of a view, which are written once, and the body at a moment."""
+
+    def __init__(self, view: Observation, wording: Wording) -> None:
+        """Write a view down."""
+        self._wording = wording
+        self._objects = wording.objects(view.objects)
+        self._points = wording.points(view.points)
+
+    def text(self, agent: AgentState) -> str:
+        """The view, and the body now."""
+        return render_from(
+            "adamo_vh.perception.prompts",
+            "symbolic_state",
+            view="frame" if self._wording.boxes else "view",
+            objects=self._objects,
+            points=self._points,
+            agent=self._wording.agent(agent),
+        )
 
 
 @dataclass

@@ -10,7 +10,7 @@ from adamo_vh.errors import FileError, RecordError
 from adamo_vh.files import append_line, make_folder, naming, write_whole
 from adamo_vh.observation import Frame
 from adamo_vh.record.run_folder import EVENTS, FRAMES, RESULT, FolderLock
-from adamo_vh.record.trajectory import Event, codec, frame_name
+from adamo_vh.record.trajectory import Event, Observed, Shown, codec
 
 
 class TrajectoryWriter:
@@ -33,19 +33,19 @@ class TrajectoryWriter:
         """
         self.fault: RecordError | FileError | None = None
         """Why nothing more is written; None if all is well."""
-        self._folder = folder
+        self._folder, self._frames, self._events = folder, folder / FRAMES, folder / EVENTS
         self._known = None if known is None else deque(known)
         self._count = len(known or ())
         self._goes_on = known is not None
         self._own_lock = FolderLock(folder) if lock is None else None
         try:
             if known is None:
-                if (folder / EVENTS).exists():
+                if self._events.exists():
                     raise RecordError(
                         f"{folder} already holds an episode; choose another --out folder."
                     )
-                with naming("written", make_folder(folder / FRAMES)):
-                    (folder / EVENTS).touch()
+                with naming("written", make_folder(self._frames)):
+                    self._events.touch()
         except BaseException:
             self.close()
             raise
@@ -83,11 +83,11 @@ class TrajectoryWriter:
         )
 
     def _write(self, event: Event, frame: Frame | None) -> None:
-        if frame is not None:
-            path = self._folder / FRAMES / frame_name(frame)
+        if frame is not None and isinstance(event, Observed | Shown):
+            path = self._frames / event.frame
             if not path.exists():
                 write_whole(path, frame.data)
-        path, line = self._folder / EVENTS, codec().dump_json(event)
+        path, line = self._events, codec().dump_json(event)
         if self._goes_on:
             # Now that all came again as it was, a later end and what a kill left may go; in one
             # move, because what comes instead may tell what was paid.

@@ -26,7 +26,7 @@ from adamo_vh.errors import ConfigError, EpisodeOverError, InvalidActionError
 from adamo_vh.inference.model import ModelInfo, ModelKind, Reply
 from adamo_vh.inference.players.outside import UNKNOWN
 from adamo_vh.observation import Observation
-from adamo_vh.perception.writer import Wording, whole_state
+from adamo_vh.perception.writer import SymbolicState, Wording
 from adamo_vh.record.termination import Stop, TerminationReason
 from adamo_vh.record.trajectory import Started
 from adamo_vh.record.turn import Wish
@@ -184,7 +184,7 @@ class DrivenBody:
         """
         if self.config.profile.state is StateText.NONE:
             return ""
-        return whole_state(observation or self._view, self._agent, self._wording)
+        return SymbolicState(observation or self._view, self._wording).text(self._agent)
 
     def think(self, thought: str | Reply) -> None:
         """Hand over what was thought before the next call.

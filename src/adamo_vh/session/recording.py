@@ -36,7 +36,8 @@ def begin_record(
     check_unused(folder)
     store_sources(folder, manifest.config, world)
     keep_figure(folder, manifest)
-    write_record(folder, MANIFEST, manifest)
+    # What a power cut takes of it in its first seconds, it takes of the events as well.
+    write_record(folder, MANIFEST, manifest, durable=False)
     writer = TrajectoryWriter(folder, lock=lock)
     stack.callback(writer.close)
     return writer

@@ -17,7 +17,7 @@ from adamo_vh.session.parts import Parts
 from adamo_vh.session.runs import resume_episode
 from adamo_vh.session.session import Session
 from adamo_vh.study.plan import Planned
-from adamo_vh.study.store import EPISODES, episode_folder, finished, lacks_diagnosis
+from adamo_vh.study.store import EPISODES, episode_folder, finished, lacks_diagnosis, row_of
 
 ASIDE = "set-aside"
 """Folder of records that could not be gone on with."""
@@ -44,12 +44,13 @@ def play(study: Path, planned: Planned, **parts: Unpack[Parts]) -> Outcome:
     before = finished(study, planned)
     if before is not None and before.is_scored:
         return _explained(study, planned, before, parts)
-    if not _gone_on(study, folder, planned.key, parts):
-        config = planned.config
-        with Session.begin(config, folder, page=False, **parts) as session:
-            session.play()
-    outcome = finished(study, planned)
-    if outcome is None:
+    if _gone_on(study, folder, planned.key, parts):
+        outcome = finished(study, planned)
+    else:
+        with Session.begin(planned.config, folder, page=False, **parts) as session:
+            result = session.play()
+            outcome = row_of(planned, session.manifest, session.trajectory, result)
+    if outcome is None or not (folder / RESULT).exists():
         raise FileError(
             f"{folder / RESULT} is not written: the disk may be full. Free some room; the same "
             "command then goes on."

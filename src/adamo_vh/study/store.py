@@ -18,12 +18,12 @@ from adamo_vh.analysis.diagnosis.finding import DIAGNOSIS, read_diagnosis
 from adamo_vh.analysis.outcome import Outcome, outcome_of
 from adamo_vh.benchmark.ways import way_m
 from adamo_vh.cognition.profile import told_without
-from adamo_vh.episode.result import read_manifest, read_result
+from adamo_vh.episode.result import EpisodeResult, Manifest, read_manifest, read_result
 from adamo_vh.errors import AdamoError, ConfigError, FileError, RecordError
 from adamo_vh.files import read_json, write_whole
 from adamo_vh.record.run_folder import RESULT, FolderLock
 from adamo_vh.record.signing import Signer
-from adamo_vh.record.trajectory import read_trajectory
+from adamo_vh.record.trajectory import Trajectory, read_trajectory
 from adamo_vh.study.axes import spelled, switches_of
 from adamo_vh.study.chain import Chain
 from adamo_vh.study.index import Index
@@ -63,18 +63,37 @@ def finished(folder: Path, planned: Planned) -> Outcome | None:
     run = episode_folder(folder, planned.key)
     if (result := read_result(run)) is None:
         return None
+    return row_of(planned, read_manifest(run), read_trajectory(run), result, _diagnosis(run))
+
+
+def row_of(
+    planned: Planned,
+    manifest: Manifest,
+    trajectory: Trajectory,
+    result: EpisodeResult,
+    diagnosis: tuple[str, str] = ("", ""),
+) -> Outcome:
+    """What came of an episode, from its records.
+
+    Args:
+        planned: The episode.
+        manifest: How it was set up.
+        trajectory: What happened.
+        result: What came of it.
+        diagnosis: Class and code of the failure, if it was diagnosed.
+    """
     cell = planned.cell
     outcome = outcome_of(
         planned.key,
-        read_manifest(run),
-        read_trajectory(run),
+        manifest,
+        trajectory,
         result,
         repetition=planned.repetition,
         axes=dict(cell.axes),
         run=f"{EPISODES}/{planned.key}",
         task=planned.config.own_task,
         shortest_m=way_m(planned.config.scene, planned.variation, planned.config.task),
-        diagnosis=_diagnosis(run),
+        diagnosis=diagnosis,
     )
     # Called as in the plan: a model that draws lots has its seed in its own name, which would make
     # a cell of every episode. What an axis varies is told by the axis alone.

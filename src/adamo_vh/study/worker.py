@@ -44,7 +44,7 @@ BEAT_S = 2.0
 _SILENT_S = 1800.0
 """Seconds without any event of an episode after which it is taken to hang: more than a provider may
 take for one answer, retries and waits included."""
-_KEPT_S = 10.0
+_KEPT_S = 60.0
 """Seconds for which free memory is kept at least."""
 _NO_USE = (ConfigError, ModelConfigError, RecordError, SceneError)
 """What another try would meet again."""

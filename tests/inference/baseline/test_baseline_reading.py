@@ -24,7 +24,7 @@ from adamo_vh.inference.messages import (
 )
 from adamo_vh.observation import AgentState, Frame, Observation, ObservedObject, ReferencePoint
 from adamo_vh.perception import TextForm
-from adamo_vh.perception.writer import Told, Wording, view_now, whole_state
+from adamo_vh.perception.writer import SymbolicState, Told, Wording, view_now
 
 CAMERA = Camera(Vec3(0.0, 0.0, 1.6), 0.0, 0.0, 1.0, 64, 36)
 
@@ -74,7 +74,7 @@ def check_body(reader: StateReader, agent: AgentState, form: TextForm) -> None:
 @given(views(), st.sampled_from(TextForm))
 def test_a_whole_state_is_read_as_it_was_written(view: Observation, form: TextForm) -> None:
     reader = StateReader()
-    assert reader.read_whole(whole_state(view, view.agent, Wording(form)))
+    assert reader.read_whole(SymbolicState(view, Wording(form)).text(view.agent))
     assert [thing.tag for thing in reader.things()] == [item.tag for item in view.objects]
     for thing, item in zip(reader.things(), view.objects, strict=True):
         assert about(thing.position, item.position, 0.00051)

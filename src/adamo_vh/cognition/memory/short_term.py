@@ -38,7 +38,7 @@ from adamo_vh.inference.messages import (
 )
 from adamo_vh.observation import AgentState, Frame, Observation
 from adamo_vh.perception import TextForm
-from adamo_vh.perception.writer import Told, Wording, view_now, whole_state
+from adamo_vh.perception.writer import SymbolicState, Told, Wording, view_now
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +87,10 @@ class ShortTermMemory:
         self._entries: list[Instruction | Exchange] = []
         self._view: Observation | None = None
         self._agent: AgentState | None = None
+        self._symbolic: SymbolicState | None = None
+        """Of the view, once it was asked for."""
         self._state: str | None = None
-        """The symbolic state as text, once it was asked for."""
+        """The same as text, with the body now."""
 
     def instruct(self, text: str, view: Observation) -> None:
         """Remember an instruction and the view at that moment."""
@@ -114,6 +116,8 @@ class ShortTermMemory:
 
     def _stand(self, view: Observation | None, agent: AgentState) -> None:
         """Note what is seen and how the body stands now."""
+        if view is not self._view:
+            self._symbolic = None
         self._view, self._agent, self._state = view, agent, None
 
     def _cut(self) -> None:
@@ -142,7 +146,8 @@ class ShortTermMemory:
         if self._view is None or self._agent is None or self._profile.state is StateText.NONE:
             return ""
         if self._state is None:
-            self._state = whole_state(self._view, self._agent, self._wording)
+            self._symbolic = self._symbolic or SymbolicState(self._view, self._wording)
+            self._state = self._symbolic.text(self._agent)
         return self._state
 
     def messages(self) -> list[Message]:
