@@ -24,6 +24,14 @@ EPISODES = plan(
         settings={"resolution": "160x90", "limits": {"max_steps": 6}},
     )
 )
+FAILURES = plan(
+    Study(
+        ("T1", "T8"),
+        models=("random",),
+        repetitions=5,
+        settings={"resolution": "160x90", "limits": {"max_steps": 3}},
+    )
+)
 _PATIENCE_S = 120
 
 
@@ -121,6 +129,21 @@ def test_several_episodes_are_in_flight_in_one_process(
     while len(done) < 3:
         done += [r.key for r in executor.wait(0.5) if isinstance(r, Finished)]
     assert sorted(done) == sorted(one.key for one in EPISODES[:3])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("in_flight", "most"), [(1, 1), (2, 4)])
+def test_others_begin_while_failures_are_explained(
+    make: Callable[..., LocalExecutor], in_flight: int, most: int
+) -> None:
+    executor, waiting, done, at_once = make(in_flight=in_flight), list(FAILURES), 0, 0
+    while done < len(FAILURES):
+        while waiting and executor.can_take():
+            executor.start(waiting.pop())
+            at_once = max(at_once, len(FAILURES) - len(waiting) - done)
+        done += sum(isinstance(report, Finished) for report in executor.wait(0.02))
+    assert at_once <= most
+    assert (at_once > in_flight) == (in_flight > 1)
 
 
 @pytest.mark.slow

@@ -8,10 +8,12 @@ from typing import Any
 
 import pytest
 
+from adamo_vh.analysis.diagnosis.finding import DIAGNOSIS
 from adamo_vh.record.trajectory import Ended
 from adamo_vh.study import worker
 from adamo_vh.study.executor import Failed, Finished, Report
 from adamo_vh.study.plan import Planned, Study, plan
+from adamo_vh.study.store import episode_folder
 from adamo_vh.study.worker import Player, Pulse, Setup
 
 (PLANNED,) = plan(Study(("T1",), settings={"resolution": "320x180"}))
@@ -33,6 +35,30 @@ def test_an_episode_ends_with_its_outcome(tmp_path: Path) -> None:
     assert isinstance(first, Finished)
     assert first.outcome.is_scored
     assert again == first
+
+
+def test_a_place_is_free_before_a_failure_is_explained(tmp_path: Path) -> None:
+    (fails,) = plan(
+        Study(
+            ("T1",),
+            models=("random",),
+            settings={"resolution": "160x90", "limits": {"max_steps": 2}},
+        )
+    )
+    diagnosis = episode_folder(tmp_path, fails.key) / DIAGNOSIS
+    told: list[tuple[str, bool]] = []
+
+    def played(key: str) -> None:
+        told.append((key, diagnosis.exists()))
+
+    player = Player(Setup(tmp_path), played=played)
+    report = player.play(fails)
+    assert isinstance(report, Finished)
+    assert report.outcome.diagnosis
+    assert told == [(fails.key, False)]
+    assert diagnosis.exists()
+    assert player.play(fails) == report  # It needs no explaining any more.
+    assert len(told) == 1
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from multiprocessing.context import SpawnProcess
 
 from adamo_vh.study.executor import Failed, Finished, Lost, Report
 from adamo_vh.study.plan import Planned
-from adamo_vh.study.worker import Alive, Setup, work
+from adamo_vh.study.worker import Alive, Played, Setup, work
 
 _SILENT_S = 120.0
 """Seconds without a sign of life after which a worker is killed."""
@@ -28,6 +28,8 @@ class _Worker:
     process: SpawnProcess
     pipe: Connection
     playing: dict[str, Planned] = field(default_factory=dict)
+    explaining: set[str] = field(default_factory=set)
+    """What of that has ended, and asks no model any more."""
     alone: bool = False
     """Whether nothing may be played beside what is."""
     heard: float = field(default_factory=time.monotonic)
@@ -71,9 +73,16 @@ class LocalExecutor:
             worker.pipe.send(planned)
 
     def _free(self, *, alone: bool) -> _Worker | None:
-        most = 1 if alone else self._in_flight
-        free = [w for w in self._workers if len(w.playing) < most and not w.alone]
+        if alone or self._in_flight == 1:
+            free = [w for w in self._workers if not w.playing and not w.alone]
+        else:
+            free = [w for w in self._workers if self._has_room(w) and not w.alone]
         return min(free, key=lambda worker: len(worker.playing), default=None)
+
+    def _has_room(self, worker: _Worker) -> bool:
+        """Whether an episode may begin; what is only explained keeps it waiting if it heaps up."""
+        count, explaining = len(worker.playing), len(worker.explaining)
+        return count - min(explaining, self._in_flight) < self._in_flight
 
     def wait(self, seconds: float) -> Sequence[Report]:
         """What has come; workers that died or fell silent are replaced."""
@@ -94,8 +103,12 @@ class LocalExecutor:
                 worker.heard = time.monotonic()
                 if isinstance(message, Alive):
                     continue
+                if isinstance(message, Played):
+                    worker.explaining.add(message.key)
+                    continue
                 if isinstance(message, Finished | Failed):
                     del worker.playing[message.key]
+                    worker.explaining.discard(message.key)
                     worker.alone = False
                 reports.append(message)
         except (EOFError, OSError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import warnings
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Unpack
 
@@ -23,7 +24,13 @@ ASIDE = "set-aside"
 """Folder of records that could not be gone on with."""
 
 
-def play(study: Path, planned: Planned, **parts: Unpack[Parts]) -> Outcome:
+def play(
+    study: Path,
+    planned: Planned,
+    *,
+    explaining: AbstractContextManager[object] | None = None,
+    **parts: Unpack[Parts],
+) -> Outcome:
     """Play an episode to its end, unless it has one that counts.
 
     An interrupted episode is gone on with, so that no reply is paid for twice: what is on record is
@@ -33,6 +40,7 @@ def play(study: Path, planned: Planned, **parts: Unpack[Parts]) -> Outcome:
     Args:
         study: The study's folder.
         planned: The episode.
+        explaining: Is entered while it is found out why the episode failed, which asks no model.
         **parts: What is handed in; see `Parts`.
 
     Raises:
@@ -43,7 +51,7 @@ def play(study: Path, planned: Planned, **parts: Unpack[Parts]) -> Outcome:
     folder = episode_folder(study, planned.key)
     before = finished(study, planned)
     if before is not None and before.is_scored:
-        return _explained(study, planned, before, parts)
+        return _explained(study, planned, before, explaining, parts)
     if _gone_on(study, folder, planned.key, parts):
         outcome = finished(study, planned)
     else:
@@ -55,17 +63,23 @@ def play(study: Path, planned: Planned, **parts: Unpack[Parts]) -> Outcome:
             f"{folder / RESULT} is not written: the disk may be full. Free some room; the same "
             "command then goes on."
         )
-    return _explained(study, planned, outcome, parts)
+    return _explained(study, planned, outcome, explaining, parts)
 
 
-def _explained(study: Path, planned: Planned, outcome: Outcome, parts: Parts) -> Outcome:
+def _explained(
+    study: Path,
+    planned: Planned,
+    outcome: Outcome,
+    explaining: AbstractContextManager[object] | None,
+    parts: Parts,
+) -> Outcome:
     """The outcome with the reason of its failure, if it is one; the score needs none."""
     if not lacks_diagnosis(study, outcome):
         return outcome
+    folder = episode_folder(study, planned.key)
     try:
-        explain_run(
-            episode_folder(study, planned.key), parts.get("engine"), task=planned.config.own_task
-        )
+        with explaining or nullcontext():
+            explain_run(folder, parts.get("engine"), task=planned.config.own_task)
     except FileError:
         raise
     except Exception as error:

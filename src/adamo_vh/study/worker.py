@@ -6,7 +6,8 @@ import os
 import threading
 import time
 import warnings
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -58,6 +59,13 @@ class Alive:
 
 
 @dataclass(frozen=True, slots=True)
+class Played:
+    """An episode has ended; why it failed is still being found out. Another one may begin."""
+
+    key: str
+
+
+@dataclass(frozen=True, slots=True)
 class Setup:
     """What a worker has to know before its first episode."""
 
@@ -87,7 +95,12 @@ class Player:
     """Plays episodes in this process and reports what became of each."""
 
     def __init__(
-        self, setup: Setup, *, purse: Purse | None = None, gate: Gate | None = None
+        self,
+        setup: Setup,
+        *,
+        purse: Purse | None = None,
+        gate: Gate | None = None,
+        played: Callable[[str], None] | None = None,
     ) -> None:
         """Prepare; engines are made when they are needed.
 
@@ -95,6 +108,7 @@ class Player:
             setup: The study.
             purse: Keeps its budget; by default a file in its folder.
             gate: Keeps the pace of its providers; by default a file in its folder.
+            played: Is told the key of an episode that has ended before its failure is explained.
         """
         self._setup = setup
         self._engines = Engines()
@@ -103,6 +117,8 @@ class Player:
         self._purse = purse or StudyLedger(setup.folder, setup.budget)
         self._pulses: dict[str, Pulse] = {}
         self._gave_back = time.monotonic()
+        self._told_played = played or (lambda _: None)
+        self._explaining = threading.Lock()
 
     @property
     def hangs(self) -> bool:
@@ -148,6 +164,7 @@ class Player:
                     outcome = play(
                         self._setup.folder,
                         planned,
+                        explaining=self._explained(planned.key),
                         engine=engine,
                         model=self._mind(planned, stack),
                         observers=(pulse,),
@@ -160,6 +177,13 @@ class Player:
                 if time.monotonic() > deadline:
                     raise
                 time.sleep(0.2)
+
+    @contextmanager
+    def _explained(self, key: str) -> Iterator[None]:
+        """Explain one failure at a time, beside episodes that wait for their models."""
+        self._told_played(key)
+        with self._explaining:
+            yield
 
     def _mind(self, planned: Planned, stack: ExitStack) -> Model | None:
         """A model that spends the study's budget; None for one that costs nothing."""
@@ -180,7 +204,7 @@ def work(pipe: Connection, setup: Setup) -> None:
     study in the next moment.
 
     Args:
-        pipe: Brings `Planned`, or None for the end; takes `Report` and `Alive`.
+        pipe: Brings `Planned`, or None for the end; takes `Report`, `Played` and `Alive`.
         setup: The study.
     """
     # Several processes draw faster with one thread each; before anything loads OpenGL.
@@ -188,7 +212,7 @@ def work(pipe: Connection, setup: Setup) -> None:
     share_pools()
     lock = threading.Lock()
 
-    def send(message: Report | Alive) -> None:
+    def send(message: Report | Alive | Played) -> None:
         try:
             with lock:
                 pipe.send(message)
@@ -196,7 +220,7 @@ def work(pipe: Connection, setup: Setup) -> None:
             os._exit(1)
 
     warnings.showwarning = lambda message, *_, **__: send(Noted(str(message)))
-    player = Player(setup)
+    player = Player(setup, played=lambda key: send(Played(key)))
 
     def beat() -> None:
         while not player.hangs:
