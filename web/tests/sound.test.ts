@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { Ear, loudness, PAUSE_MS, wav } from "../src/talk/sound.ts";
+import { Ear, EARLY_MS, loudness, PAUSE_MS, wav } from "../src/talk/sound.ts";
 
 describe("an ear", () => {
   it("hears where speech begins, and its end after a pause", () => {
@@ -15,6 +15,16 @@ describe("an ear", () => {
     while (ear.note(0.004, 40) !== "ended") waited += 40;
     expect(waited + 40).toBeGreaterThanOrEqual(PAUSE_MS);
     expect(waited).toBeLessThan(PAUSE_MS + 80);
+  });
+  it("tells when it may be the end, and takes it back", () => {
+    const ear = new Ear();
+    const say = (loud: number, ms: number): string[] => Array.from({ length: ms / 40 }, () => ear.note(loud, 40));
+    say(0.1, 400);
+    expect(say(0.004, 320)).toEqual([...Array(5).fill("speaking"), ...Array(3).fill("pausing")]);
+    expect(new Set(say(0.1, 400))).toEqual(new Set(["speaking"]));
+    const last = say(0.004, 520);
+    expect(last[EARLY_MS / 40 - 1]).toBe("pausing");
+    expect(last.indexOf("ended")).toBeGreaterThan(last.indexOf("pausing"));
   });
   it("takes neither a click nor a noisy room for speech", () => {
     const ear = new Ear();

@@ -3,12 +3,14 @@
 export const RATE = 16_000;
 /** A pause of this length ends what is said. */
 export const PAUSE_MS = 500;
+/** After this it may be one. */
+export const EARLY_MS = 240;
 const LEAST_LOUD = 0.012;
 const ABOVE_NOISE = 3;
 const SPEECH_MS = 90;
 const FLOOR_FOLLOWS = 0.05;
 
-export type Heard = "quiet" | "began" | "speaking" | "ended";
+export type Heard = "quiet" | "began" | "speaking" | "pausing" | "ended";
 
 /** Tells from the loudness of a room when somebody begins and ends to speak. */
 export class Ear {
@@ -31,7 +33,8 @@ export class Ear {
       this.speaks = false;
       return "ended";
     }
-    return this.speaks ? "speaking" : "quiet";
+    if (!this.speaks) return "quiet";
+    return this.quietFor >= EARLY_MS ? "pausing" : "speaking";
   }
 }
 

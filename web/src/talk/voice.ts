@@ -29,6 +29,8 @@ export class Microphone {
   private chunks: Float32Array[] = [];
   private timer = 0;
   private speaks = false;
+  /** What is understood of what was said so far, asked for when it may be all. */
+  private early: Promise<string> | null = null;
 
   private constructor(
     private readonly context: AudioContext,
@@ -70,22 +72,34 @@ export class Microphone {
       if (seconds > BEFORE_S) this.chunks.shift();
     } else if (told === "ended" || seconds > LONGEST_S) {
       this.speaks = false;
-      this.send();
+      this.finish();
+    } else if (told === "speaking") {
+      this.early = null;
+    } else if (told === "pausing" && !this.early) {
+      this.early = this.understood();
+      // Only if it is all, its fault is one.
+      this.early.catch(() => undefined);
     }
   }
 
-  private send(): void {
+  private finish(): void {
+    const text = this.early ?? this.understood();
+    this.early = null;
+    this.chunks = [];
+    this.listener.ended();
+    text.then(this.listener.heard, (error: unknown) => {
+      this.listener.failed(error instanceof Error ? error.message : String(error));
+    });
+  }
+
+  private understood(): Promise<string> {
     const samples = new Float32Array(this.chunks.reduce((sum, chunk) => sum + chunk.length, 0));
     let at = 0;
     for (const chunk of this.chunks) {
       samples.set(chunk, at);
       at += chunk.length;
     }
-    this.chunks = [];
-    this.listener.ended();
-    hear(wav(samples, this.context.sampleRate)).then(this.listener.heard, (error: unknown) => {
-      this.listener.failed(error instanceof Error ? error.message : String(error));
-    });
+    return hear(wav(samples, this.context.sampleRate));
   }
 
   close(): void {
