@@ -1,9 +1,9 @@
 """How soon she answers to speech, from the pause of 500 ms that ends what is said.
 
 A voice says an instruction; its sound goes over HTTP to a studio's ears as the page sends it (after
-240 ms of quiet, while it is still waited for more), the text over the WebSocket into a room once the
-pause is over, and what she answers to the voice. Models are those of the
-packages of `tests/speech/requirements.txt`, unless others are named::
+240 ms of quiet, while it is still waited for more), the text over the WebSocket into a room once
+the pause is over, and what she answers to the voice. Models are those of the packages of
+`tests/speech/requirements.txt`, unless others are named::
 
     pip install '.[speech]' -r tests/speech/requirements.txt
     python -m benchmarks.speech

@@ -47,6 +47,16 @@ describe("a face", () => {
     expect(Math.max(...seen)).toBeGreaterThan(0.9);
     expect(seen.filter((shut) => shut > 0).length).toBeLessThan(20);
   });
+  it("turns both eyes to one side, and lowers the lids with them", () => {
+    const names = ["eyeLookOutLeft", "eyeLookInLeft", "eyeLookOutRight", "eyeLookInRight", "eyeLookDownLeft", "eyeBlinkLeft"];
+    const eyes = mesh(...names);
+    const face = new Face([eyes], () => 1);
+    face.look(0.218, 0);
+    expect(eyes.morphTargetInfluences?.map((value) => Number(value.toFixed(2)))).toEqual([0.5, 0, 0, 0.5, 0, 0]);
+    face.look(-0.218, 0.436);
+    face.update(0.02);
+    expect(eyes.morphTargetInfluences?.map((value) => Number(value.toFixed(2)))).toEqual([0, 0.5, 0.5, 0, 1, 0.4]);
+  });
   it("closes its lids as far as the body's motion says", () => {
     const lids = mesh("eyeBlinkLeft");
     const face = new Face([lids], () => 1);

@@ -1,6 +1,6 @@
 import { Quaternion, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { type Bearing, Life, wished } from "../src/view/life.ts";
+import { type Bearing, Life, lookedAt, wished } from "../src/view/life.ts";
 
 const STILL = new Quaternion();
 const BESIDE = new Vector3(2, 1.2, 0.1);
@@ -46,15 +46,33 @@ describe("her bearing", () => {
     expect(alive.update(0.02, "idle", BESIDE)).toBe(true);
     expect(alive.chest.angleTo(STILL)).toBeGreaterThan(0.01);
   });
-  it("glances a little, to and fro", () => {
+  it("lets her eyes step to and fro, while the head rests", () => {
     let turn = 0;
     const life = new Life(() => true, () => (turn++ * 0.37) % 1);
     const seen = new Set<string>();
     for (let i = 0; i < 300; i++) {
       life.update(0.02, "idle", new Vector3(2, 0, 0));
-      seen.add(life.head.z.toFixed(3));
+      seen.add(life.eyes.yaw.toFixed(2));
+      expect(Math.abs(life.eyes.yaw)).toBeLessThan(0.06);
     }
-    expect(seen.size).toBeGreaterThan(2);
-    expect(life.head.angleTo(STILL)).toBeLessThan(0.05);
+    expect(seen.size).toBeGreaterThan(4);
+    expect(life.head.angleTo(STILL)).toBeLessThan(0.01);
+  });
+  it("has her eyes on whoever speaks before her head is there", () => {
+    const life = new Life(() => false);
+    const aim = lookedAt("listening", BESIDE).yaw;
+    after(life, 0.06, "listening");
+    expect(life.eyes.yaw).toBeGreaterThan(0.2);
+    const early = life.eyes.yaw;
+    after(life, 1, "listening");
+    expect(life.eyes.yaw).toBeLessThan(early / 4);
+    expect(aim).toBeCloseTo(Math.atan2(BESIDE.y, BESIDE.x));
+  });
+  it("looks with her eyes where her head does not quite go", () => {
+    const life = new Life(() => false);
+    after(life, 2, "idle");
+    expect(life.eyes.yaw).toBeGreaterThan(0.05);
+    after(life, 2, "busy");
+    expect(Math.hypot(life.eyes.yaw, life.eyes.pitch)).toBeLessThan(0.002);
   });
 });

@@ -103,3 +103,20 @@ def test_a_blink_closes_one_eye(face: Face) -> None:
         assert shut[:, 2].min() < 1.605 - 0.0054
         brow = face.shapes["brows"]
         assert brow["browInnerUp"][:, 2].max() > 0.003 > -brow[f"browDown{side}"][:, 2].max()
+
+
+def test_each_eye_turns_alone_and_keeps_its_shape(face: Face) -> None:
+    eyes, looks = face.figure["eyes"].vertices.astype(float), face.shapes["eyes"]
+    ways = {"Up": (0.0, 1.0), "Down": (0.0, -1.0), "Out": (1.0, 0.0), "In": (-1.0, 0.0)}
+    for side, y in (("Left", 1.0), ("Right", -1.0)):
+        own = eyes[:, 1] * y > 0
+        middle = np.array([0.065, 0.0335 * y, 1.605])
+        pupil = own & (eyes[:, 0] == eyes[own, 0].max())
+        for way, (out, up) in ways.items():
+            move = looks[f"eyeLook{way}{side}"]
+            assert not move[~own].any()
+            away = np.linalg.norm(eyes[own] + move[own] - middle, axis=1)
+            np.testing.assert_allclose(away, 0.0182, atol=1e-4)
+            _, outward, upward = (move[pupil].mean(axis=0) * [1.0, y, 1.0]).tolist()
+            assert outward == pytest.approx(0.0077 * out, abs=2e-4)
+            assert upward == pytest.approx(0.0077 * up, abs=2e-4)

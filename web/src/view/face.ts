@@ -27,6 +27,10 @@ const NEXT_BLINK_S: readonly [number, number] = [2.2, 6];
 const LISTENING: Shapes = { browInnerUp: 0.45, mouthSmileLeft: 0.16, mouthSmileRight: 0.16 };
 /** Turn of the joint of the eyelids that closes the eyes, radians. */
 const LIDS_CLOSED = 0.72;
+/** Turn of an eye where a shape of a look is gone into as a whole, radians. */
+const LOOK = (25 * Math.PI) / 180;
+/** How far the lids go down with eyes that look down. */
+const LIDS_FOLLOW = 0.4;
 const LEAST = 0.004;
 
 /** The shapes of the mouth at a moment of what is said. */
@@ -44,6 +48,7 @@ export class Face {
   /** What she gives to him who speaks to her: her ear, and then a thought to what he said. */
   heeds: "listening" | "thinking" | null = null;
   private lids = 0;
+  private lowered = 0;
   private shut = 0;
   private blinkAt: number;
   private time = 0;
@@ -71,6 +76,17 @@ export class Face {
     this.lids = Math.min(1, Math.max(0, angle / LIDS_CLOSED));
   }
 
+  /** The eyes are turned so far from straight ahead, radians: left and down. */
+  look(yaw: number, pitch: number): void {
+    const [left, down] = [yaw / LOOK, pitch / LOOK];
+    const turns = { Up: [-down, -down], Down: [down, down], Out: [left, -left], In: [-left, left] };
+    for (const [way, [ofLeft = 0, ofRight = 0]] of Object.entries(turns)) {
+      this.put(`eyeLook${way}Left`, Math.min(1, Math.max(0, ofLeft)));
+      this.put(`eyeLook${way}Right`, Math.min(1, Math.max(0, ofRight)));
+    }
+    this.lowered = LIDS_FOLLOW * Math.min(1, Math.max(0, down));
+  }
+
   /** Go on; returns whether anything moved. */
   update(seconds: number): boolean {
     this.time += seconds;
@@ -93,7 +109,7 @@ export class Face {
     const since = this.time - this.blinkAt;
     if (since > BLINK_S) this.blinkAt = this.time + this.pause();
     const own = since < 0 || since > BLINK_S ? 0 : Math.sin((Math.PI * since) / BLINK_S);
-    const shut = Math.max(own, this.lids);
+    const shut = Math.max(own, this.lids, this.lowered);
     const moved = shut !== this.shut;
     this.shut = shut;
     for (const side of ["eyeBlinkLeft", "eyeBlinkRight"]) this.put(side, shut);

@@ -102,7 +102,10 @@ export class Figure {
     below.copy(base.matrixWorld);
     for (const { bone, own } of this.borne) below.multiply(above.compose(bone.position, own, bone.scale));
     const moved = this.life.update(seconds, bearing, seen.copy(viewer).applyMatrix4(below.invert()).sub(EYES));
-    if (moved) this.bear();
+    if (moved) {
+      this.face.look(this.life.eyes.yaw, this.life.eyes.pitch);
+      this.bear();
+    }
     return moved;
   }
 

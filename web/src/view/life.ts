@@ -1,5 +1,5 @@
 // Her bearing over every motion: she turns to whom she talks to, tilts her head when she listens, looks
-// aside when she thinks, glances, and breathes.
+// aside when she thinks, and breathes. Her eyes are there at once, before the head, and never rest.
 
 import { Quaternion, Vector3 } from "three";
 import type { Doing } from "../protocol.ts";
@@ -30,24 +30,32 @@ const MOST_PITCH = 0.42;
 const NECK = 0.4;
 const BREATH_S = 4;
 const BREATH = 0.018;
-const GLANCE = 0.022;
-const NEXT_GLANCE_S: readonly [number, number] = [0.5, 2.2];
+/** How far the eyes go from what they look at, and how long they stay. */
+const GLANCE = 0.05;
+const NEXT_GLANCE_S: readonly [number, number] = [0.4, 2];
+/** Eyes turn no farther; the head does the rest. */
+const MOST_EYES = 0.4;
+/** A step of the eyes takes a twentieth of a second. */
+const EYES_EASE = 60;
 /** What is less is not seen, and not drawn anew. */
 const LEAST = 0.0008;
 /** How far the head goes to whoever looks on. */
 const TOWARDS: Readonly<Record<Bearing, number>> = { busy: 0, idle: 0.8, listening: 1, thinking: 0.25 };
 
+const within = (most: number, value: number): number => Math.min(most, Math.max(-most, value));
+
+/** Which way whoever looks on is, and how much he counts: behind her she does not look round for anybody. */
+function towards(viewer: Vector3): { yaw: number; pitch: number; share: number } {
+  const yaw = Math.atan2(viewer.y, viewer.x);
+  const pitch = -Math.atan2(viewer.z, Math.hypot(viewer.x, viewer.y));
+  return { yaw, pitch, share: Math.min(1, Math.max(0, (2.2 - Math.abs(yaw)) / 0.6)) };
+}
+
 /** Where the head should turn to, from where the motion has it; radians: left, down, to the right. */
 export function wished(bearing: Bearing, viewer: Vector3): Turn {
-  const flat = Math.hypot(viewer.x, viewer.y);
-  const yaw = Math.atan2(viewer.y, viewer.x);
-  // Behind her she does not look round for anybody.
-  const share = TOWARDS[bearing] * Math.min(1, Math.max(0, (2.2 - Math.abs(yaw)) / 0.6));
-  const turn = {
-    yaw: share * Math.min(MOST_YAW, Math.max(-MOST_YAW, yaw)),
-    pitch: share * Math.min(MOST_PITCH, Math.max(-MOST_PITCH, -Math.atan2(viewer.z, flat))),
-    roll: 0,
-  };
+  const { yaw, pitch, share } = towards(viewer);
+  const much = share * TOWARDS[bearing];
+  const turn = { yaw: much * within(MOST_YAW, yaw), pitch: much * within(MOST_PITCH, pitch), roll: 0 };
   if (bearing === "listening") turn.roll = 0.09;
   if (bearing === "thinking") {
     turn.yaw += 0.24;
@@ -55,6 +63,15 @@ export function wished(bearing: Bearing, viewer: Vector3): Turn {
     turn.roll = -0.05;
   }
   return turn;
+}
+
+/** Where the eyes look, from where the motion has the head; radians: left, down. */
+export function lookedAt(bearing: Bearing, viewer: Vector3): { yaw: number; pitch: number } {
+  const head = wished(bearing, viewer);
+  if (bearing === "busy") return head;
+  if (bearing === "thinking") return { yaw: head.yaw + 0.16, pitch: head.pitch - 0.1 };
+  const { yaw, pitch, share } = towards(viewer);
+  return { yaw: share * yaw, pitch: share * pitch };
 }
 
 const axes = { x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(0, 0, 1) };
@@ -71,6 +88,8 @@ export class Life {
   readonly neck = new Quaternion();
   readonly head = new Quaternion();
   readonly chest = new Quaternion();
+  /** How the eyes are turned in the head; radians: left, down. */
+  readonly eyes = { yaw: 0, pitch: 0 };
   private readonly now: Turn = { yaw: 0, pitch: 0, roll: 0 };
   private readonly glance = { yaw: 0, pitch: 0 };
   private glanceAt = 0;
@@ -95,15 +114,18 @@ export class Life {
     const lives = this.breathes();
     if (lives && bearing !== "busy") this.look();
     else this.glance.yaw = this.glance.pitch = 0;
-    wish.yaw += this.glance.yaw;
-    wish.pitch += this.glance.pitch;
-    const share = 1 - Math.exp(-EASE * seconds);
     let moved = lives;
-    for (const key of ["yaw", "pitch", "roll"] as const) {
-      const left = wish[key] - this.now[key];
-      if (Math.abs(left) < LEAST) continue;
-      this.now[key] += left * share;
+    const ease = (now: number, wish: number, rate: number): number => {
+      const left = wish - now;
+      if (Math.abs(left) < LEAST) return now;
       moved = true;
+      return now + left * (1 - Math.exp(-rate * seconds));
+    };
+    for (const key of ["yaw", "pitch", "roll"] as const) this.now[key] = ease(this.now[key], wish[key], EASE);
+    const line = lookedAt(bearing, viewer);
+    for (const key of ["yaw", "pitch"] as const) {
+      const wish = within(MOST_EYES, line[key] - this.now[key]) + this.glance[key];
+      this.eyes[key] = ease(this.eyes[key], wish, EYES_EASE);
     }
     turned(this.neck, this.now, NECK);
     turned(this.head, this.now, 1 - NECK);

@@ -8,6 +8,7 @@ are those of ARKit's blend shapes (Apple, ARFaceAnchor.BlendShapeLocation).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from adamo_vh.geometry import Array
 from adamo_vh.runtime.assets.asset import Material
 from adamo_vh.runtime.human.looks import LIDS_CLOSED_RAD, Figure, Garment
+from adamo_vh.runtime.human.rotations import about_y, about_z
 from adamo_vh.runtime.human.skeleton import INDEX, REST
 
 SHAPES = (
@@ -31,6 +33,14 @@ SHAPES = (
     "mouthRollLower",
     "eyeBlinkLeft",
     "eyeBlinkRight",
+    "eyeLookUpLeft",
+    "eyeLookUpRight",
+    "eyeLookDownLeft",
+    "eyeLookDownRight",
+    "eyeLookInLeft",
+    "eyeLookInRight",
+    "eyeLookOutLeft",
+    "eyeLookOutRight",
     "browInnerUp",
     "browOuterUpLeft",
     "browOuterUpRight",
@@ -53,6 +63,17 @@ _HINGE = np.array([0.004, 0.0, 1.563])
 _JAW_RAD = 0.24
 _EYE_Y = 0.0335
 _LASHES_RAD = 0.60
+_LOOK_RAD = math.radians(25.0)
+LOOKS: Mapping[str, Mapping[str, Array]] = {
+    side: {
+        f"eyeLookUp{side}": about_y(-_LOOK_RAD),
+        f"eyeLookDown{side}": about_y(_LOOK_RAD),
+        f"eyeLookOut{side}": about_z(out * _LOOK_RAD),
+        f"eyeLookIn{side}": about_z(-out * _LOOK_RAD),
+    }
+    for side, out in (("Left", 1.0), ("Right", -1.0))
+}
+"""How an eye is turned where a shape is gone into as a whole, by side; in is towards the nose."""
 _MOUTH_SKIN = (0.23, 0.07, 0.07, 1.0)
 _TEETH = (0.93, 0.91, 0.86, 1.0)
 
@@ -258,6 +279,8 @@ def _moves(name: str, p: Array, above: NDArray[np.bool_]) -> dict[str, Array]:
     """How far the points of a garment go, by shape."""
     if name in ("lids", "lashes"):
         return _blinks(name, p)
+    if name == "eyes":
+        return _looks(p)
     if name == "brows":
         return _brows(p)
     if name not in ("head", "mouth", "teeth"):
@@ -295,6 +318,16 @@ def _brows(p: Array) -> dict[str, Array]:
         moves["browInnerUp"] = moves["browInnerUp"] + inner * [0.0, 0.0, 0.0055]
         moves[f"browOuterUp{side}"] = outer * [0.0, 0.0, 0.0050]
         moves[f"browDown{side}"] = inner * [0.0, -0.0018 * y, -0.0040]
+    return moves
+
+
+def _looks(p: Array) -> dict[str, Array]:
+    """The eyeballs turn about their middles, each alone."""
+    moves: dict[str, Array] = {}
+    for turns, y in zip(LOOKS.values(), (_EYE_Y, -_EYE_Y), strict=True):
+        arm = p - REST[INDEX["eyelids"]] - [0.0, y, 0.0]
+        own = (p[:, 1] * y > 0)[:, None]
+        moves |= {shape: own * (arm @ turn.T - arm) for shape, turn in turns.items()}
     return moves
 
 

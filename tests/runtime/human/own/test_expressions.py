@@ -98,6 +98,7 @@ def test_nonsense_moves_nothing(told):
 def test_what_a_face_cannot_do_is_told():
     assert meaning_of_missing({}) == [
         "does not blink",
+        "eyes stay straight ahead",
         "lips do not follow speech",
         "does not smile",
         "brows do not move",
@@ -124,6 +125,29 @@ def test_a_jaw_that_is_a_bone_opens_the_mouth():
     (lids,) = (by for by in (made.figure.shapes or {}).values())
     assert lids["jawOpen"][:, 2].min() < -0.003
     assert lids["jawOpen"][:, 2].max() < 0.0005
+
+
+def test_an_eye_that_is_a_bone_turns():
+    eyed = Rig("unity", garments=("lids", "shoes"), plain=True)
+    made = own_figure_of(rig(eyed).replace(b'"Eyelids"', b'"LeftEye"'), "x.glb")
+    assert set(made.report.shapes) == {f"eyeLook{way}Left" for way in ("Up", "Down", "In", "Out")}
+    assert "eyes stay straight ahead" not in made.report.without
+    (lids,) = (by for by in (made.figure.shapes or {}).values())
+    assert lids["eyeLookUpLeft"][:, 2].max() > 0.003
+    assert lids["eyeLookOutLeft"][:, 1].max() > 0.003
+    assert abs(lids["eyeLookOutLeft"][:, 2]).max() < 1e-6
+
+
+@pytest.mark.parametrize("vrm", ["0", "1"])
+def test_a_vrm_looks_left_with_both_eyes(vrm):
+    bind = {"node": 0, "index": 2, "weight": 1.0}
+    presets = {"VRMC_vrm": {"expressions": {"preset": {"lookLeft": {"morphTargetBinds": [bind]}}}}}
+    groups = [{"presetName": "lookleft", "binds": [{"mesh": 0, "index": 2, "weight": 100}]}]
+    told = presets if vrm == "1" else {"VRM": {"blendShapeMaster": {"blendShapeGroups": groups}}}
+    assert shapes_of(document(**told)) == {
+        "eyeLookOutLeft": (Share(0, 2, 1.0, LEFT),),
+        "eyeLookInRight": (Share(0, 2, 1.0, RIGHT),),
+    }
 
 
 def test_what_a_licence_says_is_read_as_plain_text():

@@ -39,6 +39,10 @@ _ALIASES: Mapping[str, tuple[str, ...]] = {
 _HALVES: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "eyeBlinkLeft": (LEFT, ("blink", "eyesclosed", "eyeclose", "fcleyeclose")),
     "eyeBlinkRight": (RIGHT, ("blink", "eyesclosed", "eyeclose", "fcleyeclose")),
+    "eyeLookUpLeft": (LEFT, ("eyeslookup", "lookup", "eyelookup")),
+    "eyeLookUpRight": (RIGHT, ("eyeslookup", "lookup", "eyelookup")),
+    "eyeLookDownLeft": (LEFT, ("eyeslookdown", "lookdown", "eyelookdown")),
+    "eyeLookDownRight": (RIGHT, ("eyeslookdown", "lookdown", "eyelookdown")),
     "mouthSmileLeft": (LEFT, ("mouthsmile", "smile", "visemee", "visemei", "vih", "fclmthe")),
     "mouthSmileRight": (RIGHT, ("mouthsmile", "smile", "visemee", "visemei", "vih", "fclmthe")),
     "mouthFrownLeft": (LEFT, ("mouthfrown", "frown", "fclmthdown")),
@@ -57,10 +61,19 @@ _VRM: Mapping[str, tuple[tuple[str, str], ...]] = {
     "mouthSmileRight": (("ee", RIGHT), ("e", RIGHT), ("ih", RIGHT), ("i", RIGHT)),
     "eyeBlinkLeft": (("blinkleft", BOTH), ("blink_l", BOTH), ("blink", LEFT)),
     "eyeBlinkRight": (("blinkright", BOTH), ("blink_r", BOTH), ("blink", RIGHT)),
+    "eyeLookUpLeft": (("lookup", LEFT),),
+    "eyeLookUpRight": (("lookup", RIGHT),),
+    "eyeLookDownLeft": (("lookdown", LEFT),),
+    "eyeLookDownRight": (("lookdown", RIGHT),),
+    "eyeLookOutLeft": (("lookleft", LEFT),),
+    "eyeLookInRight": (("lookleft", RIGHT),),
+    "eyeLookInLeft": (("lookright", LEFT),),
+    "eyeLookOutRight": (("lookright", RIGHT),),
 }
 """Expressions of VRM 1.0 and presets of VRM 0.x that are near a shape, the nearest first."""
 WITHOUT: Mapping[str, str] = {
     "eyeBlink": "does not blink",
+    "eyeLook": "eyes stay straight ahead",
     "jawOpen": "lips do not follow speech",
     "mouthSmile": "does not smile",
     "brow": "brows do not move",

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from adamo_vh.geometry import Array
+from adamo_vh.runtime.human.face import LOOKS
 from adamo_vh.runtime.human.looks import HEAD_GARMENTS, Garment
 from adamo_vh.runtime.human.own.colours import painted
 from adamo_vh.runtime.human.own.cutting import cut
@@ -26,6 +27,12 @@ _OF_HEAD = [INDEX[joint] for joint in ("neck", "head", "eyelids")]
 _OUR_HEAD = HEAD_GARMENTS | {"mouth", "teeth"}
 _INFLUENCES = 4
 _JAW_RAD = 0.22
+BY_BONE: Mapping[str, Mapping[str, Array]] = {
+    "jaw": {"jawOpen": about_y(_JAW_RAD)},
+    "leftEye": LOOKS["Left"],
+    "rightEye": LOOKS["Right"],
+}
+"""The turns of a bone that shapes stand for, by bone and shape."""
 _MIDLINE_M = 0.012
 """So far to both sides of the middle, a shape of one half fades."""
 Moves = Mapping[str, NDArray[np.float32]]
@@ -57,8 +64,8 @@ class Making:
     shapes: Mapping[str, tuple[Share, ...]]
     numbers: Numbers
     surfaces: Surfaces
-    jaw: Array | None
-    """(3,) place of the jaw's bone in the rest pose, if its bone must open the mouth."""
+    turning: Mapping[str, Array]
+    """(3,) places in the rest pose of bones of the face that take the place of shapes."""
 
     def patch(self, piece: Piece) -> Patch:
         """Fit a piece."""
@@ -85,9 +92,11 @@ class Making:
         surface = self.surfaces.surface(piece.material)
         uvs = piece.uvs @ surface.shift[:, :2].T + surface.shift[:, 2]
         moves = dict(self._moves(piece, linear, points))
-        if self.jaw is not None and (share := _share_of(piece, bones, "jaw")).any():
-            arm = points - self.jaw
-            moves["jawOpen"] = (arm @ about_y(_JAW_RAD).T - arm) * share[:, None]
+        for bone, place in self.turning.items():
+            if (share := _share_of(piece, bones, bone)).any():
+                arm = points - place
+                for shape, turn in BY_BONE[bone].items():
+                    moves[shape] = (arm @ turn.T - arm) * share[:, None]
         patch = Patch(points, normals, uvs, faces, weights, moves, surface)
         if piece.colours is None or surface.material.texture is not None:
             return patch

@@ -24,7 +24,7 @@ from adamo_vh.runtime.human.own.faults import AGAIN, Broken
 from adamo_vh.runtime.human.own.fields import Document
 from adamo_vh.runtime.human.own.fitting import Fit, fit_of
 from adamo_vh.runtime.human.own.licence import licence_of
-from adamo_vh.runtime.human.own.making import Making, garments_of
+from adamo_vh.runtime.human.own.making import BY_BONE, Making, garments_of
 from adamo_vh.runtime.human.own.numbers import Numbers
 from adamo_vh.runtime.human.own.skins import Piece, pieces_of
 from adamo_vh.runtime.human.own.stature import Stature, stature_of
@@ -120,10 +120,12 @@ def _read(content: bytes, name: str) -> Own:
     fit = fit_of(stature, crown, bones.spine)
     surfaces = Surfaces(document, numbers, notes)
     shapes = shapes_of(document)
-    jaw = None
-    if "jawOpen" not in shapes and "jaw" in nodes:
-        jaw = (fit.maps["jaw"] @ [*stature.places["jaw"], 1.0])[:3]
-    making = Making(stature, fit, owners, shapes, numbers, surfaces, jaw)
+    turning = {
+        bone: (fit.maps[bone] @ [*stature.places[bone], 1.0])[:3]
+        for bone, stand_for in BY_BONE.items()
+        if bone in nodes and not stand_for.keys() & shapes.keys()
+    }
+    making = Making(stature, fit, owners, shapes, numbers, surfaces, turning)
     patches = [making.patch(piece) for piece in pieces]
     if hidden := sum(not patch.surface.is_seen for patch in patches):
         notes.append(f"{hidden} see-through meshes are not drawn")
