@@ -1,11 +1,12 @@
 import { defineConfig } from "vite";
+import { early } from "./dev/early.ts";
 import { fixtures } from "./dev/fixtures.ts";
 import { policy } from "./dev/policy.ts";
 import { sourceDigest } from "./dev/digest.ts";
 
 export default defineConfig({
   base: "./",
-  plugins: [fixtures(), policy(), sourceDigest()],
+  plugins: [fixtures(), policy(), early(), sourceDigest()],
   build: {
     outDir: "../src/adamo_vh/studio/page",
     emptyOutDir: true,

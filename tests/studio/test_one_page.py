@@ -22,6 +22,7 @@ from adamo_vh.studio.one_page import ELEMENT, one_page
 EVIL = "</script><script>alert(1)</script><!-- \u2028 ]]>"
 INDEX = """<!doctype html><html><head>
 <meta http-equiv="Content-Security-Policy" content="default-src &#39;self&#39;">
+<script async src="./assets/early.js"></script>
 <script type="module" crossorigin src="./assets/studio.js"></script>
 <link rel="modulepreload" crossorigin href="./assets/three.js">
 <link rel="stylesheet" crossorigin href="./assets/index.css">
@@ -37,6 +38,7 @@ def page(tmp_path: Path) -> Path:
     script = 'import{a as t}from"./three.js";const e="</script>";t(e);'
     (folder / "assets" / "studio.js").write_text(script)
     (folder / "assets" / "three.js").write_text("export const a = console.log;")
+    (folder / "assets" / "early.js").write_text("fetch('api/early');")
     (folder / "assets" / "index.css").write_text("body { margin: 0 }")
     (folder / "assets" / "icon.svg").write_text("<svg/>")
     return folder
@@ -65,6 +67,11 @@ def test_its_scripts_alone_may_run_and_nothing_is_fetched(page):
         (script,) = re.findall(rf'<script type="{kind}">(.*?)</script>', html, re.S)
         digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
         assert f"'sha256-{digest}'" in policy
+
+
+def test_what_asks_a_server_is_left_out(page):
+    html = one_page({"hello": {}, "messages": []}, page)
+    assert "early" not in html and base64.b64encode(b"api/early").decode()[:8] not in html
 
 
 def test_its_modules_find_each_other(page):

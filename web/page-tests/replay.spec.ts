@@ -22,6 +22,23 @@ test("a run is replayed, scrubbed and stepped through", async ({ page }) => {
   expect(told.triangles).toBeLessThanOrEqual(250_000);
 });
 
+test("meshes are asked for once, and before the track is there", async ({ page }) => {
+  await page.goto(`?debug#run=${encodeURIComponent(RUN)}`);
+  await drawn(page);
+  const asked = await page.evaluate(() =>
+    performance.getEntriesByType("resource").map((entry) => {
+      const { name, startTime, responseEnd } = entry as PerformanceResourceTiming;
+      return { name, startTime, responseEnd };
+    }),
+  );
+  const [track] = asked.filter(({ name }) => name.endsWith("/track"));
+  for (const part of ["scene.glb", "figure.glb"]) {
+    const found = asked.filter(({ name }) => name.endsWith(part));
+    expect(found).toHaveLength(1);
+    expect(found[0]?.startTime).toBeLessThan(track?.responseEnd ?? 0);
+  }
+});
+
 test("a long story does not lengthen the page", async ({ page }) => {
   await page.setViewportSize({ width: 1440, height: 600 });
   await page.goto(`?debug#run=${encodeURIComponent(RUN)}`);

@@ -99,11 +99,13 @@ def one_page(told: Mapping[str, Any], folder: Path = PAGE) -> str:
     if not index.is_file():
         raise ConfigError("The page is not built: run npm ci && npm run build in web/.")
     html = _POLICY.sub("", index.read_text(encoding="utf-8"))
-    files = {name: (folder / name).read_text(encoding="utf-8") for name in _LINK.findall(html)}
-    entry = next((n for n in files if f'src="./{n}"' in html and n.endswith(".js")), "")
+    links = {found[1]: found[0] for found in _LINK.finditer(html)}
+    files = {name: (folder / name).read_text(encoding="utf-8") for name in links}
+    entry = next((name for name, link in links.items() if 'type="module"' in link), "")
     if not entry:
         raise ConfigError("The page is built otherwise than expected: it has no script.")
-    scripts = {name: text for name, text in files.items() if name.endswith(".js")}
+    # Modules alone: the other script asks a server for what is all in here.
+    scripts = {name: text for name, text in files.items() if "module" in links[name]}
     styles = "\n".join(text for name, text in files.items() if name.endswith(".css"))
     modules = {_bare(name): _module(text, scripts) for name, text in scripts.items()}
     main = modules.pop(_bare(entry))
