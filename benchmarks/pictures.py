@@ -77,7 +77,7 @@ class Tab:
 @contextmanager
 def browser(program: str, arguments: tuple[str, ...]) -> Iterator[ClientConnection]:
     """A browser of its own, with an empty profile."""
-    with tempfile.TemporaryDirectory() as profile:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         command = [program, *_ARGUMENTS, *arguments, f"--user-data-dir={profile}"]
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
             try:

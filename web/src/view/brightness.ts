@@ -72,6 +72,8 @@ export const skyOf = (share: number): number => 0.25 + 0.75 * share;
 export class Brightness {
   readonly sources: Sources;
   private readonly sides: readonly Ray[];
+  /** The same as numbers: the way to each, and its colour. */
+  private readonly wide: Float64Array;
   /** Ways in which the lamp shines, and to the day. */
   private readonly down: Vector3;
   private readonly day: Vector3;
@@ -86,6 +88,7 @@ export class Brightness {
   ) {
     this.sources = sourcesOf(scene, window);
     this.sides = sidesOf(this.sources);
+    this.wide = Float64Array.from(this.sides.flatMap(({ way, light }) => [...way.toArray(), ...light.toArray()]));
     this.spots = LAMP_SPOTS.map((spot) => spot.clone().add(this.sources.lamp));
     this.down = this.sources.middle.clone().sub(this.sources.lamp).normalize();
     this.day = this.sources.day.clone().sub(this.sources.middle.clone().setZ(0.9)).normalize();
@@ -104,16 +107,20 @@ export class Brightness {
     if (lamp > 0) lamp *= Math.max(0, outwards.dot(way));
     if (lamp > 0 && isShaded) lamp *= this.lit(place, outwards);
     const day = DAY.strength * Math.max(0, outwards.dot(this.day));
-    const glow = this.glow(place, way) * Math.max(0, outwards.dot(way));
+    // What faces away from the window gets none of its glow.
+    const facing = outwards.dot(way.copy(this.sources.glow).sub(place));
+    const glow = facing > 0 ? this.glow(place, way) * Math.max(0, outwards.dot(way)) : 0;
     out[0] = direct * (lamp * LAMP.colour.r + day * DAY.colour.r + glow * GLOW.colour.r);
     out[1] = direct * (lamp * LAMP.colour.g + day * DAY.colour.g + glow * GLOW.colour.g);
     out[2] = direct * (lamp * LAMP.colour.b + day * DAY.colour.b + glow * GLOW.colour.b);
     let red = 0, green = 0, blue = 0;
-    for (const { way: from, light } of this.sides) {
-      const share = 0.5 + 0.5 * outwards.dot(from);
-      red += share * light.x;
-      green += share * light.y;
-      blue += share * light.z;
+    const { wide } = this;
+    const { x, y, z } = outwards;
+    for (let i = 0; i < wide.length; i += 6) {
+      const share = 0.5 + 0.5 * (x * (wide[i] as number) + y * (wide[i + 1] as number) + z * (wide[i + 2] as number));
+      red += share * (wide[i + 3] as number);
+      green += share * (wide[i + 4] as number);
+      blue += share * (wide[i + 5] as number);
     }
     out[3] = (red * open) / Math.PI;
     out[4] = (green * open) / Math.PI;

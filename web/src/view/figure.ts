@@ -118,6 +118,8 @@ export class Figure {
   /** Give her the full look, or the plain one. */
   dress(isFull: boolean): void {
     this.isFull = isFull;
+    this.skin.shown.visible = !isFull;
+    for (const mesh of this.meshes) mesh.visible = isFull;
   }
 
   /**

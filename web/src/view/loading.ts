@@ -2,13 +2,24 @@
 
 import { Bone, type Material, Mesh, MeshStandardMaterial, type Object3D, SkinnedMesh } from "three";
 import { type GLTF, GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { Pictures } from "./pictures.ts";
 
 export type Progress = (share: number) => void;
 
-export async function loadGltf(url: string, progress?: Progress): Promise<GLTF> {
-  return new GLTFLoader().loadAsync(url, (event) => {
+/** A file as soon as its shapes are there, and when its pictures are. */
+export async function loadShapes(url: string, progress?: Progress): Promise<{ gltf: GLTF; pictures: Promise<unknown> }> {
+  let pictures: Pictures | null = null;
+  const loader = new GLTFLoader().register((parser) => (pictures = new Pictures(parser)));
+  const gltf = await loader.loadAsync(url, (event) => {
     if (event.total > 0) progress?.(Math.min(1, event.loaded / event.total));
   });
+  return { gltf, pictures: (pictures as Pictures | null)?.ready ?? Promise.resolve() };
+}
+
+export async function loadGltf(url: string): Promise<GLTF> {
+  const { gltf, pictures } = await loadShapes(url);
+  await pictures;
+  return gltf;
 }
 
 /** The name of a node in the file; three changes it where it holds a slash or comes twice. */

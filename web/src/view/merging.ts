@@ -1,21 +1,48 @@
 // Joins what never moves into one mesh a material: far fewer draw calls.
 
-import { BufferAttribute, BufferGeometry, type Material, Mesh, Object3D } from "three";
-import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
-import { floats } from "./floats.ts";
+import { BufferAttribute, BufferGeometry, type Material, Matrix3, Mesh, Object3D } from "three";
+import { floats, placed, turned } from "./floats.ts";
 
 /** A mesh's geometry in the world's frame, with exactly the attributes that are named. */
-function placed(mesh: Mesh, names: readonly string[]): BufferGeometry {
+function standing(mesh: Mesh, names: readonly string[]): BufferGeometry {
   const geometry = new BufferGeometry();
+  mesh.updateWorldMatrix(true, false);
   for (const name of names) {
     const own = mesh.geometry.getAttribute(name);
     // Packed numbers could not be turned and moved.
-    if (own) geometry.setAttribute(name, new BufferAttribute(floats(own), own.itemSize));
+    const values = floats(own);
+    if (name === "position") placed(values, mesh.matrixWorld, values);
+    if (name === "normal") turned(values, new Matrix3().getNormalMatrix(mesh.matrixWorld), values);
+    geometry.setAttribute(name, new BufferAttribute(values, own.itemSize));
   }
-  const index = mesh.geometry.getIndex();
-  if (index) geometry.setIndex(index.clone());
-  mesh.updateWorldMatrix(true, false);
-  return geometry.applyMatrix4(mesh.matrixWorld);
+  geometry.setIndex(mesh.geometry.getIndex());
+  return geometry;
+}
+
+/** Geometries with the same attributes as one. */
+function joined(parts: readonly BufferGeometry[]): BufferGeometry {
+  const out = new BufferGeometry();
+  for (const [name, { itemSize }] of Object.entries(parts[0]?.attributes ?? {})) {
+    const own = parts.map((part) => part.getAttribute(name).array);
+    const values = new Float32Array(own.reduce((sum, { length }) => sum + length, 0));
+    let at = 0;
+    for (const array of own) {
+      values.set(array, at);
+      at += array.length;
+    }
+    out.setAttribute(name, new BufferAttribute(values, itemSize));
+  }
+  const counts = parts.map((part) => part.getIndex()?.count ?? part.getAttribute("position").count);
+  const index = new Uint32Array(counts.reduce((sum, count) => sum + count, 0));
+  let [at, from] = [0, 0];
+  parts.forEach((part, n) => {
+    const own = part.getIndex()?.array;
+    const count = counts[n] as number;
+    for (let i = 0; i < count; i++) index[at++] = from + (own ? (own[i] as number) : i);
+    from += part.getAttribute("position").count;
+  });
+  out.setIndex(new BufferAttribute(from > 65_535 ? index : Uint16Array.from(index), 1));
+  return out;
 }
 
 /**
@@ -28,15 +55,14 @@ export function merged(meshes: readonly Mesh[], finer: (mesh: Mesh, geometry: Bu
   for (const mesh of meshes) {
     const material = mesh.material as Material;
     const names = Object.keys(mesh.geometry.attributes).sort();
-    const key = `${material.uuid} ${names.join(" ")}`;
+    const sizes = names.map((name) => mesh.geometry.getAttribute(name).itemSize);
+    const key = `${material.uuid} ${names.join(" ")} ${sizes.join(" ")}`;
     const known = byLooks.get(key);
     if (known) known.meshes.push(mesh);
     else byLooks.set(key, { material, meshes: [mesh], names });
   }
   for (const { material, meshes: alike, names } of byLooks.values()) {
-    const parts = alike.map((mesh) => finer(mesh, placed(mesh, names)));
-    const geometry = mergeGeometries(parts, false);
-    if (geometry) group.add(new Mesh(geometry, material));
+    group.add(new Mesh(joined(alike.map((mesh) => finer(mesh, standing(mesh, names)))), material));
   }
   return group;
 }

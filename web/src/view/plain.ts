@@ -17,7 +17,7 @@ import {
 import type { BodyLight } from "./bodylight.ts";
 import { type Brightness, skyOf } from "./brightness.ts";
 import { coded, MOST } from "./coding.ts";
-import { floats } from "./floats.ts";
+import { floats, placed, turned } from "./floats.ts";
 import { WHITE } from "./surfaces.ts";
 
 const VERTEX = `
@@ -106,27 +106,35 @@ export class Plain {
    */
   light(geometry: BufferGeometry, own: Material, at: Matrix4, isStill: boolean): void {
     const [places, normals] = [geometry.getAttribute("position"), geometry.getAttribute("normal")];
-    const colours = geometry.hasAttribute("color") ? geometry.getAttribute("color") : null;
-    const tint = "color" in own ? (own as MeshStandardMaterial).color.toArray() : [1, 1, 1];
     const baked = this.baked.get(geometry) ?? this.begin(geometry, own);
-    const [place, outwards] = [new Vector3(), new Vector3()];
-    const found = new Float32Array(6);
-    const [from, facing] = [floats(places), floats(normals)];
-    const painted = colours ? { of: floats(colours), size: colours.itemSize } : null;
-    for (let i = 0; i < places.count; i++) {
-      place.fromArray(from, i * 3).applyMatrix4(at);
-      outwards.fromArray(facing, i * 3).transformDirection(at);
-      this.brightness.at(place, outwards, isStill, found);
-      for (let k = 0; k < 3; k++) {
-        const colour = (tint[k] as number) * (painted ? (painted.of[i * painted.size + k] as number) : 1);
-        baked.direct[i * 3 + k] = (found[k] as number) * colour;
-        baked.sky[i * 3 + k] = (found[k + 3] as number) * colour;
-      }
-    }
+    const from = placed(floats(places), at, new Float64Array(places.count * 3));
+    const facing = turned(floats(normals), at, new Float64Array(normals.count * 3));
+    this.fall(baked, from, facing, isStill);
+    const tint = "color" in own ? (own as MeshStandardMaterial).color.toArray() : [1, 1, 1];
+    const colours = geometry.hasAttribute("color") ? geometry.getAttribute("color") : null;
+    paint(baked, tint, colours ? floats(colours) : null, colours?.itemSize ?? 0);
     this.shade(baked);
   }
 
-  private begin(geometry: BufferGeometry, own: Material): Baked {
+  /** Let light fall on corners, whatever their colour. */
+  private fall({ direct, sky }: Baked, places: Float64Array, ways: Float64Array, isStill: boolean): void {
+    const { brightness } = this;
+    const place = new Vector3();
+    const outwards = new Vector3();
+    const found = new Float32Array(6);
+    for (let i = 0; i < places.length; i += 3) {
+      place.set(places[i] as number, places[i + 1] as number, places[i + 2] as number);
+      outwards.set(ways[i] as number, ways[i + 1] as number, ways[i + 2] as number);
+      brightness.at(place, outwards, isStill, found);
+      for (let k = 0; k < 3; k++) {
+        direct[i + k] = found[k] as number;
+        sky[i + k] = found[k + 3] as number;
+      }
+    }
+  }
+
+  /** Keep room for the light of something, which is dark until its light is worked out. */
+  begin(geometry: BufferGeometry, own: Material): Baked {
     const { count } = geometry.getAttribute("position");
     const colours = geometry.hasAttribute("color") ? geometry.getAttribute("color") : null;
     const light = new BufferAttribute(new Uint8ClampedArray(count * 4), 4, true);
@@ -162,7 +170,8 @@ export class Plain {
   }
 
   private shade({ light, direct, sky, shine }: Baked): void {
-    const [lamps, surroundings] = this.dims;
+    const lamps = this.dims[0];
+    const surroundings = this.dims[1];
     const out = light.array;
     for (let i = 0; i < light.count; i++) {
       for (let k = 0; k < 3; k++) {
@@ -177,5 +186,16 @@ export class Plain {
   close(): void {
     for (const map of this.maps.values()) map.dispose();
     for (const material of this.made.values()) material.dispose();
+  }
+}
+
+/** Give light that fell on corners the colour of the surface there. */
+function paint({ direct, sky }: Baked, tint: readonly number[], colours: Float32Array | null, size: number): void {
+  for (let i = 0; i < direct.length / 3; i++) {
+    for (let k = 0; k < 3; k++) {
+      const colour = (tint[k] as number) * (colours ? (colours[i * size + k] as number) : 1);
+      direct[i * 3 + k] = (direct[i * 3 + k] as number) * colour;
+      sky[i * 3 + k] = (sky[i * 3 + k] as number) * colour;
+    }
   }
 }

@@ -95,8 +95,16 @@ export class Room {
       this.lit.set(mesh, mesh.matrixWorld.clone());
     }
     if (own.name === "outside") this.plain.shine(mesh.geometry);
-    else this.plain.light(mesh.geometry, own, mesh.matrixWorld, isStill);
+    else this.plain.begin(mesh.geometry, own);
     return { mesh, own, plain: this.plain.look(own), full: fullLook(own, this.ambience) };
+  }
+
+  /** Work out the light on everything, for the plain look; until then it is dark. */
+  light(): void {
+    const still = new Set(this.fixed);
+    for (const { mesh, own } of this.looks) {
+      if (own.name !== "outside") this.plain.light(mesh.geometry, own, mesh.matrixWorld, still.has(mesh));
+    }
   }
 
   /** Give everything its full look, or its plain one. */
@@ -158,7 +166,8 @@ const isNear = (a: Matrix4, b: Matrix4): boolean =>
 
 /** Whether it lies on the floor or hangs on a wall so flat that nothing can be behind it. */
 export function isFlat(mesh: Mesh): boolean {
-  mesh.geometry.computeBoundingBox();
+  // The file tells how far it reaches.
+  if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
   const size = mesh.geometry.boundingBox?.clone().applyMatrix4(mesh.matrixWorld).getSize(new Vector3());
   return size !== undefined && size.z < 0.03;
 }

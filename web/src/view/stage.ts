@@ -8,7 +8,7 @@ import { ContactShadows } from "./contact.ts";
 import { Figure } from "./figure.ts";
 import type { Bearing } from "./life.ts";
 import { type Lights, lightRoom, surroundings } from "./lights.ts";
-import { loadGltf, type Progress } from "./loading.ts";
+import { loadShapes, meshesIn, type Progress } from "./loading.ts";
 import { EXPOSURE } from "./coding.ts";
 import { drawsPlainly } from "./machine.ts";
 import { Quality } from "./quality.ts";
@@ -25,6 +25,8 @@ export interface Stats {
   pixels: string;
 }
 
+/** So long it takes at least until pictures are being unpacked. */
+const READ_MS = 8;
 const WARM_FRAMES = 4;
 const REFLECTED = 0.8;
 /** After so long without a change the picture is drawn sharp. */
@@ -80,7 +82,7 @@ export class Stage {
     tick: Tick,
     progress?: Progress,
   ): Promise<Stage> {
-    const loading = Promise.all([loadGltf(urls.scene, progress), loadGltf(urls.figure)]);
+    const loading = Promise.all([loadShapes(urls.scene, progress), loadShapes(urls.figure)]);
     const isPlain = drawsPlainly();
     const renderer = new WebGLRenderer({ canvas, antialias: !isPlain, powerPreference: "high-performance" });
     renderer.outputColorSpace = SRGBColorSpace;
@@ -90,10 +92,30 @@ export class Stage {
     renderer.shadowMap.type = PCFShadowMap;
     renderer.info.autoReset = false;
     const [scene, person] = await loading;
-    const room = Room.of(scene, hello.scene);
-    const figure = Figure.of(person, hello.joints, room);
+    // Meanwhile pictures are read, so that they are unpacked beside what follows.
+    await new Promise((done) => setTimeout(done, READ_MS));
+    const room = Room.of(scene.gltf, hello.scene);
+    const figure = Figure.of(person.gltf, hello.joints, room);
     const cameras = new Cameras(hello.scene, hello.body, room.voxels);
-    return new Stage(renderer, hello, room, figure, cameras, tick, isPlain);
+    const stage = new Stage(renderer, hello, room, figure, cameras, tick, isPlain);
+    await Promise.all([scene.pictures, person.pictures]);
+    stage.prime();
+    room.light();
+    return stage;
+  }
+
+  /** Let shapes, pictures and programs be made ready to draw with, which goes on while light is worked out. */
+  private prime(): void {
+    const { renderer, scene, cameras } = this;
+    const meshes = meshesIn(scene);
+    const culled = meshes.filter((mesh) => mesh.frustumCulled);
+    // A triangle of each is enough, wherever it is.
+    for (const mesh of culled) mesh.frustumCulled = false;
+    for (const { geometry } of meshes) geometry.setDrawRange(0, 3);
+    renderer.render(scene, cameras.camera);
+    renderer.getContext().flush();
+    for (const { geometry } of meshes) geometry.setDrawRange(0, Infinity);
+    for (const mesh of culled) mesh.frustumCulled = true;
   }
 
   private dress(isFull: boolean): void {

@@ -1,6 +1,7 @@
 // The room in small cubes: which are filled tells cameras where not to be, and light where it is dim.
 
-import { type Box3, type BufferGeometry, type Mesh, Vector3 } from "three";
+import { type Box3, type Mesh, Vector3 } from "three";
+import { floats, placed } from "./floats.ts";
 
 export const CELL_M = 0.1;
 
@@ -52,28 +53,38 @@ export class Voxels {
   /** Fill what the triangles of a mesh pass through. */
   add(mesh: Mesh): void {
     mesh.updateWorldMatrix(true, false);
-    const geometry: BufferGeometry = mesh.geometry;
-    const positions = geometry.getAttribute("position");
-    const index = geometry.getIndex();
-    const count = index ? index.count : positions.count;
-    const [a, b, c] = [new Vector3(), new Vector3(), new Vector3()];
-    const at = (corner: number, out: Vector3): Vector3 =>
-      out.fromBufferAttribute(positions, index ? index.getX(corner) : corner).applyMatrix4(mesh.matrixWorld);
-    for (let i = 0; i + 2 < count; i += 3) this.fillTriangle(at(i, a), at(i + 1, b), at(i + 2, c));
+    const own = mesh.geometry.getAttribute("position");
+    const corners = floats(own, new Float64Array(own.count * 3));
+    const places = placed(corners, mesh.matrixWorld, corners);
+    const index = mesh.geometry.getIndex()?.array;
+    const count = index ? index.length : own.count;
+    for (let i = 0; i + 2 < count; i += 3) {
+      if (index) this.fillTriangle(places, (index[i] as number) * 3, (index[i + 1] as number) * 3, (index[i + 2] as number) * 3);
+      else this.fillTriangle(places, i * 3, i * 3 + 3, i * 3 + 6);
+    }
   }
 
-  private fillTriangle(a: Vector3, b: Vector3, c: Vector3): void {
-    const longest = Math.max(a.distanceTo(b), b.distanceTo(c), c.distanceTo(a));
+  /** Corners are told by where they begin in the list of places. */
+  private fillTriangle(places: Float64Array, a: number, b: number, c: number): void {
+    const ax = places[a] as number, ay = places[a + 1] as number, az = places[a + 2] as number;
+    const bx = places[b] as number, by = places[b + 1] as number, bz = places[b + 2] as number;
+    const cx = places[c] as number, cy = places[c + 1] as number, cz = places[c + 2] as number;
+    const longest = Math.max(apart(ax - bx, ay - by, az - bz), apart(bx - cx, by - cy, bz - cz), apart(cx - ax, cy - ay, cz - az));
     const steps = Math.min(200, Math.max(1, Math.ceil(longest / (CELL_M * 0.7))));
+    const { filled, nx, ny, nz } = this;
+    const { x: x0, y: y0, z: z0 } = this.box.min;
     for (let u = 0; u <= steps; u++) {
+      const p = u / steps;
       for (let v = 0; v <= steps - u; v++) {
-        const p = u / steps;
         const q = v / steps;
         const r = 1 - p - q;
-        const cell = this.index(a.x * p + b.x * q + c.x * r, a.y * p + b.y * q + c.y * r, a.z * p + b.z * q + c.z * r);
-        if (cell < 0) continue;
-        this.filled[cell] = 1;
-        this.top = Math.max(this.top, a.z * p + b.z * q + c.z * r + CELL_M);
+        const z = az * p + bz * q + cz * r;
+        const i = Math.floor((ax * p + bx * q + cx * r - x0) / CELL_M);
+        const j = Math.floor((ay * p + by * q + cy * r - y0) / CELL_M);
+        const k = Math.floor((z - z0) / CELL_M);
+        if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny || k >= nz) continue;
+        filled[i + nx * (j + ny * k)] = 1;
+        if (z + CELL_M > this.top) this.top = z + CELL_M;
       }
     }
   }
@@ -119,3 +130,5 @@ export class Voxels {
     return free;
   }
 }
+
+const apart = (x: number, y: number, z: number): number => Math.sqrt(x * x + y * y + z * z);
