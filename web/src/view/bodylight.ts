@@ -24,7 +24,7 @@ export class BodyLight {
   private readonly sky = new Float32Array(12);
   /** The way to each single light, and its colour. */
   private readonly rays = new Float32Array(MOST_RAYS * 6);
-  private readonly open: Float32Array;
+  private readonly open = new Float32Array(HEIGHTS);
 
   /**
    * @param sides Wide light: what faces away from it gets none, what faces aside half.
@@ -33,12 +33,24 @@ export class BodyLight {
    */
   constructor(sides: readonly Ray[], rays: readonly Ray[], open: (height: number) => number) {
     for (const { way, light } of sides) {
-      [1, way.x, way.y, way.z].forEach((share, n) => {
-        for (let k = 0; k < 3; k++) this.sky[k * 4 + n] = (this.sky[k * 4 + n] as number) + 0.5 * share * light.getComponent(k);
-      });
+      this.add(0, way, light.x);
+      this.add(4, way, light.y);
+      this.add(8, way, light.z);
     }
-    rays.slice(0, MOST_RAYS).forEach(({ way, light }, n) => this.rays.set([...way.toArray(), ...light.toArray()], n * 6));
-    this.open = Float32Array.from({ length: HEIGHTS }, (_, i) => open((i + 0.5) * HEIGHT_M));
+    for (let n = 0; n < Math.min(rays.length, MOST_RAYS); n++) {
+      const { way, light } = rays[n] as Ray;
+      way.toArray(this.rays, n * 6);
+      light.toArray(this.rays, n * 6 + 3);
+    }
+    for (let i = 0; i < HEIGHTS; i++) this.open[i] = open((i + 0.5) * HEIGHT_M);
+  }
+
+  private add(at: number, { x, y, z }: Vector3, light: number): void {
+    const { sky } = this;
+    sky[at] = (sky[at] as number) + 0.5 * light;
+    sky[at + 1] = (sky[at + 1] as number) + 0.5 * x * light;
+    sky[at + 2] = (sky[at + 2] as number) + 0.5 * y * light;
+    sky[at + 3] = (sky[at + 3] as number) + 0.5 * z * light;
   }
 
   /**
@@ -50,9 +62,16 @@ export class BodyLight {
    */
   shade(places: Numbers, ways: Numbers, from: number, to: number, tint: readonly number[], out: Numbers): void {
     const { open } = this;
-    const [ax, ay, az, ar, ag, ab, bx, by, bz, br, bg, bb, cx, cy, cz, cr, cg, cb] = this.rays as unknown as Eighteen;
-    const [r0, rx, ry, rz, g0, gx, gy, gz, b0, bx0, by0, bz0] = this.sky as unknown as Eighteen;
-    const [red, green, blue] = tint as Eighteen;
+    // One by one: to take lists apart in one go takes far longer to get ready for.
+    const rays = this.rays as unknown as Eighteen;
+    const ax = rays[0], ay = rays[1], az = rays[2], ar = rays[3], ag = rays[4], ab = rays[5];
+    const bx = rays[6], by = rays[7], bz = rays[8], br = rays[9], bg = rays[10], bb = rays[11];
+    const cx = rays[12], cy = rays[13], cz = rays[14], cr = rays[15], cg = rays[16], cb = rays[17];
+    const sky = this.sky as unknown as Eighteen;
+    const r0 = sky[0], rx = sky[1], ry = sky[2], rz = sky[3];
+    const g0 = sky[4], gx = sky[5], gy = sky[6], gz = sky[7];
+    const b0 = sky[8], bx0 = sky[9], by0 = sky[10], bz0 = sky[11];
+    const red = tint[0] as number, green = tint[1] as number, blue = tint[2] as number;
     for (let corner = from, at = from * 3; corner < to; corner++, at += 3) {
       const x = ways[at] as number;
       const y = ways[at + 1] as number;

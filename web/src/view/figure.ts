@@ -26,6 +26,8 @@ export class Figure {
   /** The same body for the plain look. */
   private readonly skin: Skin;
   private isFull = false;
+  /** Whether her head was seen last. */
+  private isWhole = true;
   private readonly life = new Life(() => this.isFull);
   /** Joints that her bearing turns, and how the motion has them. */
   private readonly borne: { bone: Bone; joint: number; own: Quaternion; more: Quaternion }[];
@@ -66,7 +68,6 @@ export class Figure {
     this.skeletons = new Set(this.meshes.map((mesh) => mesh.skeleton));
     this.skin = new Skin(this.meshes, room.plain);
     for (const mesh of this.meshes) mesh.material = fullLook(surface(mesh.material as Material), room.ambience);
-    this.group.add(...this.meshes, this.skin.shown);
   }
 
   static of(gltf: GLTF, joints: readonly string[], room: Room): Figure {
@@ -118,8 +119,10 @@ export class Figure {
   /** Give her the full look, or the plain one. */
   dress(isFull: boolean): void {
     this.isFull = isFull;
-    this.skin.shown.visible = !isFull;
-    for (const mesh of this.meshes) mesh.visible = isFull;
+    // What is not shown need not be looked through for each picture.
+    this.group.remove(...this.meshes, this.skin.shown);
+    if (isFull) this.group.add(...this.meshes);
+    else this.group.add(this.skin.shown);
   }
 
   /**
@@ -128,11 +131,12 @@ export class Figure {
    */
   prepare(isWhole: boolean): void {
     const isSeen = ({ name }: Material): boolean => isWhole || !HEAD.includes(name);
-    for (const mesh of this.meshes) mesh.visible = this.isFull && isSeen(mesh.material as Material);
-    const { shown } = this.skin;
-    shown.visible = !this.isFull;
-    if (this.isFull) return;
-    for (const material of shown.material) material.visible = isSeen(material);
+    if (this.isFull) {
+      for (const mesh of this.meshes) mesh.visible = isSeen(mesh.material as Material);
+      return;
+    }
+    if (this.isWhole !== isWhole) for (const material of this.skin.shown.material) material.visible = isSeen(material);
+    this.isWhole = isWhole;
     const { x, y } = this.root.position;
     for (const skeleton of this.skeletons) skeleton.update();
     this.skin.update(this.room.plain.around(x, y));

@@ -46,6 +46,9 @@ interface Part {
   /** Its corners among those of the whole body. */
   from: number;
   to: number;
+  /** Those of them that one joint alone carries, by joint, which is quickly told; and all others. */
+  stiff: ReadonlyMap<number, readonly number[]>;
+  soft: readonly number[];
   shapes: readonly Shape[];
   /** Shares of the shapes that are taken on. */
   mixed: Float32Array;
@@ -77,6 +80,21 @@ function carriedOf(meshes: readonly SkinnedMesh[]): Carried {
     if (i % 4 === 3) begin[(i + 1) / 4] = count;
   }
   return { begin, joint, weight };
+}
+
+/** The corners from one to another that go along with one joint alone, by joint, and all others. */
+function parted({ begin, joint, weight }: Carried, from: number, to: number): { stiff: Map<number, number[]>; soft: number[] } {
+  const stiff = new Map<number, number[]>();
+  const soft: number[] = [];
+  for (let corner = from; corner < to; corner++) {
+    const first = begin[corner] as number;
+    const isAlone = begin[corner + 1] === first + 1 && weight[first] === 1;
+    const own = joint[first] as number;
+    const alike = isAlone ? (stiff.get(own) ?? []) : soft;
+    if (isAlone) stiff.set(own, alike);
+    alike.push(corner);
+  }
+  return { stiff, soft };
 }
 
 export class Skin {
@@ -119,7 +137,7 @@ export class Skin {
       const to = from + mesh.geometry.getAttribute("position").count;
       const shapes = shapesOf(mesh.geometry);
       const tint = "color" in own ? own.color.toArray() : [1, 1, 1];
-      const part = { mesh, from, to, shapes, mixed: new Float32Array(shapes.length), tint: tint.map(coded) };
+      const part = { mesh, from, to, ...parted(this.carried, from, to), shapes, mixed: new Float32Array(shapes.length), tint: tint.map(coded) };
       from = to;
       return part;
     });
@@ -143,14 +161,45 @@ export class Skin {
     if (isOther) this.places.needsUpdate = this.light.needsUpdate = true;
   }
 
-  private bend({ mesh, from, to }: Part): void {
+  private bend({ mesh, stiff, soft }: Part): void {
     const bones = mesh.skeleton.boneMatrices;
     if (!bones) return;
+    for (const [joint, corners] of stiff) this.carry(corners, bones, joint);
+    this.blend(soft, bones);
+  }
+
+  /** Take corners to where one joint has them. */
+  private carry(corners: readonly number[], bones: Float32Array, m: number): void {
+    const { shaped, normals, ways } = this;
+    const places = this.places.array;
+    const xx = bones[m] as number, xy = bones[m + 4] as number, xz = bones[m + 8] as number, x0 = bones[m + 12] as number;
+    const yx = bones[m + 1] as number, yy = bones[m + 5] as number, yz = bones[m + 9] as number, y0 = bones[m + 13] as number;
+    const zx = bones[m + 2] as number, zy = bones[m + 6] as number, zz = bones[m + 10] as number, z0 = bones[m + 14] as number;
+    for (let i = 0; i < corners.length; i++) {
+      const at = (corners[i] as number) * 3;
+      const x = shaped[at] as number;
+      const y = shaped[at + 1] as number;
+      const z = shaped[at + 2] as number;
+      const a = normals[at] as number;
+      const b = normals[at + 1] as number;
+      const c = normals[at + 2] as number;
+      places[at] = xx * x + xy * y + xz * z + x0;
+      places[at + 1] = yx * x + yy * y + yz * z + y0;
+      places[at + 2] = zx * x + zy * y + zz * z + z0;
+      ways[at] = xx * a + xy * b + xz * c;
+      ways[at + 1] = yx * a + yy * b + yz * c;
+      ways[at + 2] = zx * a + zy * b + zz * c;
+    }
+  }
+
+  /** Take corners to where several joints have them, each to its share. */
+  private blend(corners: readonly number[], bones: Float32Array): void {
     const { shaped, normals, ways } = this;
     const { begin, joint, weight } = this.carried;
     const places = this.places.array;
-    const bone = (at: number): number => bones[at] as number;
-    for (let corner = from, at = from * 3; corner < to; corner++, at += 3) {
+    for (let i = 0; i < corners.length; i++) {
+      const corner = corners[i] as number;
+      const at = corner * 3;
       const x = shaped[at] as number;
       const y = shaped[at + 1] as number;
       const z = shaped[at + 2] as number;
@@ -162,12 +211,12 @@ export class Skin {
       for (let n = begin[corner] as number; n < end; n++) {
         const share = weight[n] as number;
         const m = joint[n] as number;
-        const xx = bone(m), xy = bone(m + 4), xz = bone(m + 8);
-        const yx = bone(m + 1), yy = bone(m + 5), yz = bone(m + 9);
-        const zx = bone(m + 2), zy = bone(m + 6), zz = bone(m + 10);
-        px += share * (xx * x + xy * y + xz * z + bone(m + 12));
-        py += share * (yx * x + yy * y + yz * z + bone(m + 13));
-        pz += share * (zx * x + zy * y + zz * z + bone(m + 14));
+        const xx = bones[m] as number, xy = bones[m + 4] as number, xz = bones[m + 8] as number;
+        const yx = bones[m + 1] as number, yy = bones[m + 5] as number, yz = bones[m + 9] as number;
+        const zx = bones[m + 2] as number, zy = bones[m + 6] as number, zz = bones[m + 10] as number;
+        px += share * (xx * x + xy * y + xz * z + (bones[m + 12] as number));
+        py += share * (yx * x + yy * y + yz * z + (bones[m + 13] as number));
+        pz += share * (zx * x + zy * y + zz * z + (bones[m + 14] as number));
         nx += share * (xx * a + xy * b + xz * c);
         ny += share * (yx * a + yy * b + yz * c);
         nz += share * (zx * a + zy * b + zz * c);

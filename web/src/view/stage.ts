@@ -54,6 +54,8 @@ export class Stage {
   private last = 0;
   private drewLast = false;
   private running = 0;
+  /** Of the canvas on the page. To ask it for its size may lay the page out anew: it is asked when it changes. */
+  private size = { width: 0, height: 0 };
   moment: Moment | null = null;
 
   private constructor(
@@ -72,6 +74,7 @@ export class Stage {
     this.scene.environmentIntensity = REFLECTED;
     this.dress(false);
     this.scene.add(room.group, figure.group, this.contact.mesh);
+    this.scene.matrixWorldAutoUpdate = false;
   }
 
   /** Get ready to draw: plainly at once, and fully as soon as that is prepared, unless a processor draws. */
@@ -127,12 +130,12 @@ export class Stage {
 
   /** Prepare reflections and shadows while the plain picture is shown, then draw with them. */
   private async enrich(): Promise<void> {
-    const { renderer, scene, cameras, room } = this;
+    const { renderer, scene, cameras, room, figure } = this;
     scene.environment = surroundings(renderer, room.window ?? new Vector3(1, 0, 0));
     scene.add(this.lights.group);
-    room.dress(true);
+    for (const part of [room, figure]) part.dress(true);
     const ready = renderer.compileAsync(scene, cameras.camera);
-    room.dress(false);
+    for (const part of [room, figure]) part.dress(false);
     await ready;
     this.dress(true);
     if (this.moment) this.show(this.moment);
@@ -171,9 +174,9 @@ export class Stage {
   }
 
   resize(): void {
-    const canvas = this.renderer.domElement;
-    const { clientWidth: width, clientHeight: height } = canvas;
+    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
     if (!width || !height) return;
+    this.size = { width, height };
     this.setPixels(this.movingShare);
     this.cameras.resize(width, height);
     this.lights.shadowSize(this.quality.current.shadow);
@@ -181,7 +184,7 @@ export class Stage {
   }
 
   private get movingShare(): number {
-    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
+    const { width, height } = this.size;
     return this.quality.share(width * height * ratio() ** 2);
   }
 
@@ -189,7 +192,7 @@ export class Stage {
   private setPixels(share: number): void {
     const canvas = this.renderer.domElement;
     // Once for all: a processor that draws takes its time for each new size.
-    this.renderer.setDrawingBufferSize(canvas.clientWidth, canvas.clientHeight, ratio() * share);
+    this.renderer.setDrawingBufferSize(this.size.width, this.size.height, ratio() * share);
     this.stats.pixels = `${canvas.width}x${canvas.height}`;
     this.isSharp = share >= 1;
   }
@@ -258,15 +261,17 @@ export class Stage {
   }
 
   private draw(): void {
-    const { renderer, cameras, stats } = this;
+    const { renderer, scene, room, cameras, stats } = this;
     if (!this.isFull) this.room.relight();
     else if (this.shadowsLate) {
       this.lights.refresh();
       this.shadowsLate = false;
     }
     this.figure.prepare(cameras.kind !== "eyes");
+    // The room puts what moves in it where it is by itself.
+    for (const part of scene.children) if (part !== room.group) part.updateMatrixWorld();
     renderer.info.reset();
-    renderer.render(this.scene, cameras.camera);
+    renderer.render(scene, cameras.camera);
     stats.calls = renderer.info.render.calls;
     stats.triangles = renderer.info.render.triangles;
     for (const listener of this.afterwards) listener();
