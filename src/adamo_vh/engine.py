@@ -161,20 +161,20 @@ class WorldState:
         for item in self.objects:
             q = item.box.orientation
             sign = -1.0 if (q.w, q.x, q.y, q.z) < (0.0, 0.0, 0.0, 0.0) else 1.0
-            turn = [_rounded(v * sign, 3) for v in (q.w, q.x, q.y, q.z)]
+            turn = _rounded(3, q.w * sign, q.x * sign, q.y * sign, q.z * sign)
             lines.append(f"{item.id} {_point(item.box.center)} {turn} {item.support} {item.held}")
         body = self.body
-        lines.append(f"body {_point(body.position)} {_rounded(body.heading_rad, 3)}")
+        lines.append(f"body {_point(body.position)} {_rounded(3, body.heading_rad)[0]}")
         lines.append(f"eyes {_point(body.eyes)} gaze {_point(body.gaze)} held {body.held}")
         return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
-def _rounded(value: float, digits: int) -> float:
-    return round(value, digits) + 0.0
+def _rounded(digits: int, *values: float) -> list[float]:
+    return [round(value, digits) + 0.0 for value in values]
 
 
 def _point(point: Vec3) -> list[float]:
-    return [_rounded(v, 4) for v in (point.x, point.y, point.z)]
+    return _rounded(4, point.x, point.y, point.z)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, BinaryIO, NoReturn
 from uuid import uuid4
 
 from adamo_vh.errors import FileError
@@ -116,11 +116,10 @@ def write_whole(path: Path, data: bytes, *, durable: bool = False) -> Path:
     Raises:
         FileError: It cannot be written; what stood there is as it was.
     """
-    make_folder(path.parent)
     half = path.with_name(f".{uuid4().hex[:12]}.part")
     with naming("written", path):
         try:
-            with half.open("xb") as file:
+            with _new(half) as file:
                 file.write(data)
                 if durable:
                     file.flush()
@@ -133,6 +132,15 @@ def write_whole(path: Path, data: bytes, *, durable: bool = False) -> Path:
         if durable:
             _sync_folder(path.parent)
     return path
+
+
+def _new(path: Path) -> BinaryIO:
+    """A new file, open; the folder is mostly there."""
+    try:
+        return path.open("xb")
+    except FileNotFoundError:
+        make_folder(path.parent)
+        return path.open("xb")
 
 
 def _sync_folder(folder: Path) -> None:

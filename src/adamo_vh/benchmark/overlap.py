@@ -23,14 +23,22 @@ def penetration_m(a: Box, b: Box) -> float:
         zero or negative if they are apart.
     """
     axes_a, axes_b = a.orientation.matrix(), b.orientation.matrix()
+    half_a, half_b = a.size.array() / 2, b.size.array() / 2
+    apart = (b.center - a.center).array()
+
+    def along(axes: Array) -> float:
+        reach = np.abs(axes @ axes_a) @ half_a + np.abs(axes @ axes_b) @ half_b
+        return float((reach - np.abs(axes @ apart)).min())
+
+    depth = along(np.concatenate([axes_a.T, axes_b.T]))
+    if depth <= 0:
+        return depth
     crosses = np.cross(axes_a.T[:, None, :], axes_b.T[None, :, :]).reshape(9, 3)
     lengths = np.linalg.norm(crosses, axis=1)
     skew = lengths > _PARALLEL
-    axes = np.concatenate([axes_a.T, axes_b.T, crosses[skew] / lengths[skew, None]])
-    reach = np.abs(axes @ axes_a) @ (a.size.array() / 2) + np.abs(axes @ axes_b) @ (
-        b.size.array() / 2
-    )
-    return float((reach - np.abs(axes @ (b.center - a.center).array())).min())
+    if not skew.any():
+        return depth
+    return min(depth, along(crosses[skew] / lengths[skew, None]))
 
 
 def footprint_overlaps(box: Box, area: Area) -> bool:

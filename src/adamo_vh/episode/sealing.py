@@ -7,6 +7,8 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
+from pydantic_core import from_json
+
 from adamo_vh.episode.result import EpisodeResult, record_json, write_record
 from adamo_vh.errors import FileError, RecordError
 from adamo_vh.files import read_text, write_whole
@@ -35,7 +37,7 @@ def write_result(folder: Path, result: EpisodeResult, recorded: Trajectory) -> E
         FileError: It cannot be written.
     """
     # As it will be read back, to the last digit.
-    plain = json.loads(record_json(result))
+    plain = from_json(record_json(result))
     sealed = replace(result, seal=seal_of(folder, recorded, plain))
     write_record(folder, RESULT, sealed)
     return sealed
