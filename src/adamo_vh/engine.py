@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal, Protocol
 
 from adamo_vh.action import Outcome
@@ -159,18 +160,25 @@ class WorldState:
         """Hex digest over all poses, rounded to 0.1 mm and 0.001 rad."""
         lines = [self.scene.full_name]
         for item in self.objects:
-            q = item.box.orientation
-            sign = -1.0 if (q.w, q.x, q.y, q.z) < (0.0, 0.0, 0.0, 0.0) else 1.0
-            turn = _rounded(3, q.w * sign, q.x * sign, q.y * sign, q.z * sign)
-            lines.append(f"{item.id} {_point(item.box.center)} {turn} {item.support} {item.held}")
+            lines.append(f"{item.id} {_pose(item.box)} {item.support} {item.held}")
         body = self.body
         lines.append(f"body {_point(body.position)} {_rounded(3, body.heading_rad)[0]}")
         lines.append(f"eyes {_point(body.eyes)} gaze {_point(body.gaze)} held {body.held}")
         return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
+@lru_cache(maxsize=1024)
+def _pose(box: Box) -> str:
+    """Where a box is, for the hash; most are where they were a step ago."""
+    q = box.orientation
+    sign = -1.0 if (q.w, q.x, q.y, q.z) < (0.0, 0.0, 0.0, 0.0) else 1.0
+    turn = _rounded(3, q.w * sign, q.x * sign, q.y * sign, q.z * sign)
+    return f"{_point(box.center)} {turn}"
+
+
 def _rounded(digits: int, *values: float) -> list[float]:
-    return [round(value, digits) + 0.0 for value in values]
+    # Equal numbers of any type are spelt alike.
+    return [float(round(value, digits)) + 0.0 for value in values]
 
 
 def _point(point: Vec3) -> list[float]:
