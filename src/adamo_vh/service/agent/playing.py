@@ -86,7 +86,7 @@ def play_program(
     Raises:
         ConfigError: A setting is wrong, there is no such program, or no box and it must have one.
     """
-    isolation = _isolation(program.isolation, watch)
+    isolation, lacks = _isolation(program.isolation)
     words = _words(program.command)
     words[0] = found_program(words[0])
     if lacking := [name for name in program.passed if name not in os.environ]:
@@ -95,6 +95,9 @@ def play_program(
         if not path.exists():
             raise ConfigError(f"--agent-bind {path}: there is no such file or folder.")
     offer = Offer(settings, fixed=folder.absolute(), player=program.name, isolation=isolation)
+    if lacks:
+        # Not before it is sure that there will be a run.
+        watch(f"not isolated: {lacks}. The run will be marked, and never ranked.")
     with Episodes(offer, engines=engines, observers=observers) as episodes:
         episode = episodes.find(episodes.fixed, program.name)
         assert episode is not None  # It begins here.
@@ -199,8 +202,8 @@ def _write(kept: Path, program: Program, finished: Finished, isolation: str) -> 
     write_whole(kept / RECORD, json.dumps(record, indent=1).encode() + b"\n")
 
 
-def _isolation(wished: str, watch: Watch) -> Isolation:
-    """How the program will be kept from all but its body.
+def _isolation(wished: str) -> tuple[Isolation, str]:
+    """How the program will be kept from all but its body, and why not in a box as was wished.
 
     Raises:
         ConfigError: It must have a box, and there is none here.
@@ -210,9 +213,7 @@ def _isolation(wished: str, watch: Watch) -> Isolation:
     problem = "" if wished == "none" else box_problem()
     if wished == "bwrap" and problem:
         raise ConfigError(f"--isolation bwrap: {problem}. Mend it, or use --isolation none.")
-    if problem:
-        watch(f"not isolated: {problem}. The run will be marked, and never ranked.")
-    return "none" if wished == "none" or problem else "bwrap"
+    return ("none" if wished == "none" or problem else "bwrap"), problem
 
 
 def _words(command: str) -> list[str]:
