@@ -39,7 +39,8 @@ def programs() -> None:
 
 
 def words(text: str) -> list[str]:
-    return re.sub(r"[^a-z ]", "", text.lower()).split()
+    # "Where's" may be heard as "where is". A voice draws lots, so that it is not heard alike twice.
+    return re.sub(r"[^a-z ]", "", text.lower().replace("'s ", " is ")).split()
 
 
 def piper_file() -> Path:
