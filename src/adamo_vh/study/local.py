@@ -34,6 +34,11 @@ class _Worker:
     """Whether nothing may be played beside what is."""
     heard: float = field(default_factory=time.monotonic)
 
+    def places_taken(self, most: int) -> int:
+        """How many of its places are; of several, what is only explained leaves its own."""
+        left = min(len(self.explaining), most) if most > 1 else 0
+        return len(self.playing) - left
+
 
 class LocalExecutor:
     """Plays episodes in processes of this machine."""
@@ -73,16 +78,9 @@ class LocalExecutor:
             worker.pipe.send(planned)
 
     def _free(self, *, alone: bool) -> _Worker | None:
-        if alone or self._in_flight == 1:
-            free = [w for w in self._workers if not w.playing and not w.alone]
-        else:
-            free = [w for w in self._workers if self._has_room(w) and not w.alone]
+        most = 1 if alone else self._in_flight
+        free = [w for w in self._workers if w.places_taken(most) < most and not w.alone]
         return min(free, key=lambda worker: len(worker.playing), default=None)
-
-    def _has_room(self, worker: _Worker) -> bool:
-        """Whether an episode may begin; what is only explained keeps it waiting if it heaps up."""
-        count, explaining = len(worker.playing), len(worker.explaining)
-        return count - min(explaining, self._in_flight) < self._in_flight
 
     def wait(self, seconds: float) -> Sequence[Report]:
         """What has come; workers that died or fell silent are replaced."""

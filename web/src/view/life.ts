@@ -66,8 +66,7 @@ export function wished(bearing: Bearing, viewer: Vector3): Turn {
 }
 
 /** Where the eyes look, from where the motion has the head; radians: left, down. */
-export function lookedAt(bearing: Bearing, viewer: Vector3): { yaw: number; pitch: number } {
-  const head = wished(bearing, viewer);
+export function lookedAt(bearing: Bearing, viewer: Vector3, head = wished(bearing, viewer)): { yaw: number; pitch: number } {
   if (bearing === "busy") return head;
   if (bearing === "thinking") return { yaw: head.yaw + 0.16, pitch: head.pitch - 0.1 };
   const { yaw, pitch, share } = towards(viewer);
@@ -122,10 +121,10 @@ export class Life {
       return now + left * (1 - Math.exp(-rate * seconds));
     };
     for (const key of ["yaw", "pitch", "roll"] as const) this.now[key] = ease(this.now[key], wish[key], EASE);
-    const line = lookedAt(bearing, viewer);
+    const line = lookedAt(bearing, viewer, wish);
     for (const key of ["yaw", "pitch"] as const) {
-      const wish = within(MOST_EYES, line[key] - this.now[key]) + this.glance[key];
-      this.eyes[key] = ease(this.eyes[key], wish, EYES_EASE);
+      const turn = within(MOST_EYES, line[key] - this.now[key]) + this.glance[key];
+      this.eyes[key] = ease(this.eyes[key], turn, EYES_EASE);
     }
     turned(this.neck, this.now, NECK);
     turned(this.head, this.now, 1 - NECK);
