@@ -155,6 +155,8 @@ class Feedback:
     """One short, truthful sentence or two."""
     walked_m: float = 0.0
     """Length of the way that the body walked for it, metres."""
+    stopped_s: float | None = None
+    """Simulated seconds of motion after which it was stopped on request; None if it was not."""
 
     @classmethod
     def of_error(cls, error: InvalidActionError) -> Feedback:

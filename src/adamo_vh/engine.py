@@ -198,6 +198,8 @@ class BodyReport:
     """What the dropped object rests on."""
     walked_m: float = 0.0
     """Length of the path that the body walked."""
+    stopped_s: float | None = None
+    """Simulated seconds of motion after which it was stopped on request; None if it was not."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,6 +50,21 @@ def test_the_way_around_the_table_is_short() -> None:
     assert 4.0 < path.length_m < 5.0
 
 
+@given(inside, inside, st.floats(0.0, 1.0))
+def test_what_was_walked_to_a_place_is_measured_along_the_way(
+    start: Vec3, target: Vec3, part: float
+) -> None:
+    path = FLOOR.ways_from(start).to_nearest(target)
+    left_m = path.length_m * part
+    place = path.end
+    for a, b in zip(path.points, path.points[1:], strict=False):
+        if left_m <= a.distance(b):
+            place = a + (b - a) * (left_m / a.distance(b))
+            break
+        left_m -= a.distance(b)
+    assert path.walked_to(place) == pytest.approx(path.length_m * part, abs=1e-6)
+
+
 def test_a_target_inside_furniture_ends_beside_it() -> None:
     path = FLOOR.ways_from(Vec3(-2, -1, 0)).to_nearest(Vec3(-0.05, -1.0, 0))
     gap = float(TABLE.distance(path.end.array()[None, :2])[0])

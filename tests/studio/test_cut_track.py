@@ -16,7 +16,7 @@ from adamo_vh.studio.messages import Places
 from adamo_vh.studio.tracks import track_of
 
 
-@pytest.mark.parametrize("stop_s", [0.0, 0.7])
+@pytest.mark.parametrize("stop_s", [0.0, 0.7, 6.0], ids=["at once", "walking", "reaching"])
 def test_what_was_dragged_cut_and_undone_is_shown_again(
     engine: BuiltinEngine, tmp_path: Path, stop_s: float
 ) -> None:
@@ -41,14 +41,13 @@ def test_what_was_dragged_cut_and_undone_is_shown_again(
     kinds = [m["event"]["type"] for m in track.messages if m["type"] == "event"]
     assert kinds[0] == "happened" and "restored" in kinds and kinds[-1] == "ended"
     assert [m["text"] for m in track.messages if m["type"] == "notice"] == []
-    (acted,) = [
-        n for n, m in enumerate(track.messages) if m.get("event", {}).get("type") == "acted"
-    ]
+    acts = [n for n, m in enumerate(track.messages) if m.get("event", {}).get("type") == "acted"]
+    acted = next(n for n in acts if track.messages[n]["event"]["feedback"]["code"] == "cancelled")
     shown = [m for m in track.messages[:acted] if m["type"] == "pose"]
     seconds, pose = seen[-1]
     assert pose is not None
     assert shown[-2]["t"] == round(seconds, 3)
     assert (tuple(shown[-2]["body"]), tuple(shown[-2]["joints"])) == (pose.body, pose.joints)
-    assert shown[-1]["body"] == shown[-2]["body"]
+    assert shown[-1]["body"] == shown[-2]["body"] and shown[-1]["held"] is None
     last = [m for m in track.messages if m["type"] == "pose"][-1]
     assert tuple(last["body"][:2]) == (round(end.x, 4), round(end.y, 4))

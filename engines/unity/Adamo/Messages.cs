@@ -700,6 +700,7 @@ namespace Adamo
         public Vec3 Point;
         public string Support;
         public double WalkedM = 0.0;
+        public double? StoppedS;
 
         public static ReportAnswer Read(object json)
         {
@@ -710,6 +711,7 @@ namespace Adamo
             if (map.ContainsKey("point")) read.Point = map["point"] == null ? null : Vec3.Read(map["point"]);
             if (map.ContainsKey("support")) read.Support = map["support"] == null ? null : Json.Words(map["support"]);
             if (map.ContainsKey("walked_m")) read.WalkedM = Json.Number(map["walked_m"]);
+            if (map.ContainsKey("stopped_s")) read.StoppedS = map["stopped_s"] == null ? (double?)null : Json.Number(map["stopped_s"]);
             return read;
         }
 
@@ -722,6 +724,7 @@ namespace Adamo
                 { "point", Point == null ? null : Point.Write() },
                 { "support", Support },
                 { "walked_m", WalkedM },
+                { "stopped_s", StoppedS },
             };
         }
     }

@@ -97,7 +97,7 @@ def _closer(report: BodyReport) -> str:
 
 def _feedback(report: BodyReport, text: str) -> Feedback:
     sentence = f"{report.outcome.capitalize()}: {text}."
-    return Feedback(report.outcome, report.code, sentence, report.walked_m)
+    return Feedback(report.outcome, report.code, sentence, report.walked_m, report.stopped_s)
 
 
 def _refusal(report: BodyReport, unreachable: str, no_spot: str = "") -> Feedback:

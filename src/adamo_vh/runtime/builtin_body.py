@@ -28,6 +28,8 @@ _SHOULDERS_M = (1.35, 0.7)
 _OVERHEAD_M = 1.75
 """What is higher does not keep the body off: it can stand below."""
 _MAX_SPOT_CHECKS = 60
+_MOMENT_DIGITS = 4
+"""Of the seconds after which an action was stopped."""
 
 
 class BuiltinBody:
@@ -106,11 +108,12 @@ class BuiltinBody:
     @in_turn
     def look(self, point: Vec3) -> BodyReport:
         """Turn body and gaze to a point."""
+        begun_s = self._stage.shown_s
         end, exact = self.stance.facing(point)
         motion = partial(look_motion, self.stance, end)
         self._move(self._stage.perform(end, motion, self.stance.held))
         if self.stance != end:
-            return BodyReport(Outcome.CORRECTED, Code.CANCELLED, self.stance.gaze)
+            return replace(self._cancelled(begun_s), point=self.stance.gaze)
         if exact:
             return BodyReport(Outcome.DONE, Code.OK, end.gaze)
         return BodyReport(Outcome.CORRECTED, Code.GAZE_LIMITED, end.gaze)
@@ -118,10 +121,10 @@ class BuiltinBody:
     @in_turn
     def walk(self, point: Vec3) -> BodyReport:
         """Walk to the reachable place that is nearest to a point."""
-        start = self.stance.position
+        begun_s = self._stage.shown_s
         path = self._ways().to_nearest(point)
         if not self._walk(path):
-            return self._cancelled(start)
+            return self._cancelled(begun_s, path)
         walked = path.length_m
         if path.end.horizontal_distance(point) <= _AS_ASKED_M:
             return BodyReport(Outcome.DONE, Code.OK, path.end, walked_m=walked)
@@ -134,18 +137,18 @@ class BuiltinBody:
             return BodyReport(Outcome.REFUSED, Code.HAND_FULL)
         if object_id in self._world.absent:
             return BodyReport(Outcome.REFUSED, Code.GONE)
-        start, target = self.stance.position, self._world.box(object_id).center
+        begun_s, target = self._stage.shown_s, self._world.box(object_id).center
         path = self.way_to(target, BODY_RADIUS_M if target.z < _OVERHEAD_M else 0.0)
         if path is None:
             return self._unreachable(target)
         if not self._walk(path):
-            return self._cancelled(start)
+            return self._cancelled(begun_s, path)
         facing, _ = self.stance.facing(target)
         holding = replace(facing, held=object_id)
         motion = partial(pick_motion, self.stance, holding, target, depth=self._depth)
         self._move(self._stage.perform(holding, motion, object_id))
         if self.stance.held is None:
-            return self._cancelled(start)
+            return self._cancelled(begun_s, path)
         physics.settle(self._world, object_id)
         code = Code.REPOSITIONED if path.length_m > 0 else Code.OK
         return BodyReport(Outcome.DONE, code, target, walked_m=path.length_m)
@@ -153,7 +156,7 @@ class BuiltinBody:
     @in_turn
     def drop(self, point: Vec3) -> BodyReport:
         """Put the held object down at the free spot nearest to a point."""
-        held, start = self.stance.held, self.stance.position
+        begun_s, held = self._stage.shown_s, self.stance.held
         if held is None:
             return BodyReport(Outcome.REFUSED, Code.HAND_EMPTY)
         shape = Solid.around(self._world.box(held))
@@ -165,13 +168,13 @@ class BuiltinBody:
             return self._unreachable(point)
         spot, path = chosen
         if not self._walk(path):
-            return self._cancelled(start)
+            return self._cancelled(begun_s, path)
         facing, _ = self.stance.facing(spot.center)
         free = replace(facing, held=None)
         motion = partial(drop_motion, self.stance, free, spot.center, depth=self._depth)
         self._move(self._stage.perform(free, motion, held, spot.center))
         if self.stance.held is not None:
-            return self._cancelled(start)
+            return self._cancelled(begun_s, path)
         physics.put_down(self._world, held, spot.center, None)
         rest = self._world.box(held).center
         support = physics.supports(self._world, None)[held]
@@ -253,10 +256,19 @@ class BuiltinBody:
         nearest = self._ways().to_nearest(target).end
         return BodyReport(Outcome.REFUSED, Code.UNREACHABLE, nearest)
 
-    def _cancelled(self, start: Vec3) -> BodyReport:
+    def _cancelled(self, begun_s: float, path: Path | None = None) -> BodyReport:
+        """A stop on request: where it stands, how far it walked, and after how long.
+
+        Args:
+            begun_s: What the stage had shown when the action began.
+            path: Where it was walking, or had walked.
+        """
         here = self.stance.position
-        walked = here.horizontal_distance(start)
-        return BodyReport(Outcome.CORRECTED, Code.CANCELLED, here, walked_m=walked)
+        walked = path.walked_to(here) if path else 0.0
+        stopped = round(self._stage.shown_s - begun_s, _MOMENT_DIGITS)
+        return BodyReport(
+            Outcome.CORRECTED, Code.CANCELLED, here, walked_m=walked, stopped_s=stopped
+        )
 
     def _move(self, stance: Stance) -> None:
         """Take a new stance, and bring the held object to the hand."""

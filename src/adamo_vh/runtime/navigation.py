@@ -7,9 +7,11 @@ approximations.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,7 +45,19 @@ class Path:
     @property
     def length_m(self) -> float:
         """Metres walked."""
-        return sum(a.distance(b) for a, b in zip(self.points, self.points[1:], strict=False))
+        return sum(a.distance(b) for a, b in pairwise(self.points))
+
+    def walked_to(self, place: Vec3) -> float:
+        """Metres walked on arrival at the point of it that is nearest to a place."""
+        nearest_m, walked_m, so_far_m = math.inf, 0.0, 0.0
+        for a, b in pairwise(self.points):
+            along, off, whole_m = b - a, place - a, a.distance(b)
+            part = (along.x * off.x + along.y * off.y) / whole_m**2 if whole_m else 0.0
+            part = min(max(part, 0.0), 1.0)
+            if (off_m := place.horizontal_distance(a + along * part)) < nearest_m:
+                nearest_m, walked_m = off_m, so_far_m + whole_m * part
+            so_far_m += whole_m
+        return walked_m
 
 
 class FloorMap:

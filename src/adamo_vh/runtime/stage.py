@@ -47,6 +47,8 @@ class Stage:
         self.watcher: Watcher | None = None
         self.moments_per_s = MOMENTS_PER_S
         """How often an action that is watched is shown."""
+        self.shown_s = 0.0
+        """Simulated seconds of all motion that was watched so far."""
 
     def watch(self, watcher: Watcher | None, moments_per_s: int = MOMENTS_PER_S) -> None:
         """Be watched from now on, by one at a time; None ends it."""
@@ -184,11 +186,11 @@ class Stage:
             return end
         motion = make(self.thing(thing))
         data = self._world.data
-        kept = data.qpos.copy()
+        kept, before_s = data.qpos.copy(), self.shown_s
         moments = np.arange(0.0, motion.duration_s, 1.0 / self.moments_per_s)
         try:
             for seconds in (*moments.tolist(), motion.duration_s):
-                self._moment = motion.at(seconds)
+                self._moment, self.shown_s = motion.at(seconds), before_s + seconds
                 if thing is not None and self._moment.body.held == thing:
                     physics.place(self._world, thing, self.held_at(self._moment))
                 elif thing is not None and rest is not None:

@@ -11,19 +11,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from adamo_vh.errors import ConfigError
-from adamo_vh.geometry import wrap_angle
 
 if TYPE_CHECKING:
     from adamo_vh.engine import World
     from adamo_vh.geometry import Array
-    from adamo_vh.observation import AgentState
     from adamo_vh.runtime.builtin import BuiltinEngine
 
 RATE_HZ = 30
 """How often an action is shown."""
 _DIGITS = 4
-_SAME = 1e-6
-"""Metres and radians that two bodies at the same moment of the same motion differ by at most."""
 _Numbers = tuple[float, ...]
 
 
@@ -89,30 +85,13 @@ class Posing:
         self._engine: BuiltinEngine = world
         self._moment = moment or (lambda: True)
         self._known = _Known()
-        self._before_s = 0.0
-        self._in_motion_s = 0.0
-        world.stage.watch(self._shown, RATE_HZ)
+        self._since_s = world.stage.shown_s
+        world.stage.watch(lambda _: self._moment(), RATE_HZ)
 
     @property
     def seconds(self) -> float:
-        """Simulated seconds since it was first looked at."""
-        return self._before_s + self._in_motion_s
-
-    def _shown(self, seconds: float) -> bool:
-        if seconds < self._in_motion_s or seconds == 0.0:
-            # Another motion has begun.
-            self._before_s += self._in_motion_s
-        self._in_motion_s = seconds
-        return self._moment()
-
-    def stands_as(self, agent: AgentState) -> bool:
-        """Whether the body of this moment stands, is turned and looks as an agent was told."""
-        body = self._engine.stage.shown(self._engine.body.stance).body
-        return (
-            body.position.distance(agent.position) < _SAME
-            and abs(wrap_angle(body.heading_rad - agent.heading_rad)) < _SAME
-            and body.gaze.distance(agent.gaze) < _SAME
-        )
+        """Simulated seconds of motion since it was first looked at."""
+        return self._engine.stage.shown_s - self._since_s
 
     def close(self) -> None:
         """Look on no longer."""

@@ -20,6 +20,9 @@ from adamo_vh.studio import messages
 from adamo_vh.studio.messages import Href, Message, Part, Places
 from adamo_vh.studio.telling import Telling
 
+_SAME_S = 1e-3
+"""Seconds by which one moment of a motion, as it is on record and as it comes again, may differ."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Track:
@@ -73,6 +76,8 @@ class _Making:
         self._telling = Telling(self._tell, href, None)
         self._came = 0
         """How many events have come again."""
+        self._begun_s = 0.0
+        """The simulated second at which the last of them came."""
         self._cut: set[int] = set()
         """Steps of the actions that were cut short again, where a person had done so."""
 
@@ -109,7 +114,8 @@ class _Making:
     def _moment(self, posing: Posing) -> bool:
         self._telling.pose()
         act = next((e for e in islice(self.events, self._came, None) if isinstance(e, Acted)), None)
-        if act is None or not act.is_cut or not posing.stands_as(act.agent):
+        stopped_s = None if act is None else act.feedback.stopped_s
+        if act is None or stopped_s is None or posing.seconds - self._begun_s < stopped_s - _SAME_S:
             return True
         self._cut.add(act.step)
         return False
@@ -120,6 +126,7 @@ class _Making:
         for told in self.events[self._came : place + 1]:
             self._telling.notify(told)
         self._came = place + 1
+        self._begun_s = self._telling.seconds
 
     def _say(self, text: str) -> None:
         self._telling.tell(messages.notice(text, "warning"))

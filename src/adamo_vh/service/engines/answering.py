@@ -167,8 +167,10 @@ class Answerer:
 
 
 def _report(report: BodyReport) -> ReportAnswer:
-    code = Code(report.code)
-    return ReportAnswer(report.outcome, code, report.point, report.support, report.walked_m)
+    where = report.point, report.support
+    return ReportAnswer(
+        report.outcome, Code(report.code), *where, report.walked_m, report.stopped_s
+    )
 
 
 def _boxes(percept: Percept) -> Sequence[SeenBox]:

@@ -206,6 +206,7 @@ class ReportAnswer:
     point: Vec3 | None = None
     support: str | None = None
     walked_m: float = 0.0
+    stopped_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

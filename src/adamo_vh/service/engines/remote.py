@@ -315,9 +315,13 @@ class _RemoteBody:
         faults = [*_name_faults(support or FLOOR)]
         if answer.walked_m < 0 or (point is not None and _is_far(point)):
             faults.append(f"it walked {answer.walked_m:g} m and ended at {point}.")
+        if answer.stopped_s is not None and answer.stopped_s < 0:
+            faults.append(f"it was stopped after {answer.stopped_s:g} s.")
         if faults:
             raise self._world.line.failed(method, faults[0])
-        return BodyReport(answer.outcome, answer.code, point, support, answer.walked_m)
+        return BodyReport(
+            answer.outcome, answer.code, point, support, answer.walked_m, answer.stopped_s
+        )
 
     def say(self, text: str) -> None:
         """Deliver the agent's final answer."""
