@@ -16,9 +16,9 @@ from adamo_vh.geometry import Camera, Vec3
 from adamo_vh.observation import Percept, SeenObject
 from adamo_vh.runtime import physics
 from adamo_vh.runtime.embodiment import Stance
+from adamo_vh.runtime.human.face_mujoco import FaceParts
 from adamo_vh.runtime.human.grasp import Thing
 from adamo_vh.runtime.human.motion import BodyFrame, Motion, idle
-from adamo_vh.runtime.human.own.lids import Lids
 from adamo_vh.runtime.human.skin_mujoco import pose_human
 from adamo_vh.runtime.rendering import SceneRenderer
 from adamo_vh.runtime.world import CompiledWorld
@@ -39,7 +39,7 @@ class Stage:
     def __init__(self, world: CompiledWorld) -> None:
         """Prepare; graphics are opened when the first picture is drawn."""
         self._world = world
-        self._lids = Lids.of(world.model, world.figure)
+        self._face = FaceParts.of(world.model, world.figure)
         self._renderer: SceneRenderer | None = None
         self._moment: BodyFrame | None = None
         self._last: tuple[object, Percept] | None = None
@@ -206,7 +206,7 @@ class Stage:
         import mujoco
 
         pose_human(self._world.model, self._world.data, *shown.joints())
-        self._lids.follow(shown.pose)
+        self._face.follow(shown.pose, shown.look_rad)
         mujoco.mj_kinematics(self._world.model, self._world.data)
         mujoco.mj_camlight(self._world.model, self._world.data)
 

@@ -63,13 +63,14 @@ _HINGE = np.array([0.004, 0.0, 1.563])
 _JAW_RAD = 0.24
 _EYE_Y = 0.0335
 _LASHES_RAD = 0.60
-_LOOK_RAD = math.radians(25.0)
+MOST_LOOK_RAD = math.radians(25.0)
+"""So far an eye turns from straight ahead."""
 LOOKS: Mapping[str, Mapping[str, Array]] = {
     side: {
-        f"eyeLookUp{side}": about_y(-_LOOK_RAD),
-        f"eyeLookDown{side}": about_y(_LOOK_RAD),
-        f"eyeLookOut{side}": about_z(out * _LOOK_RAD),
-        f"eyeLookIn{side}": about_z(-out * _LOOK_RAD),
+        f"eyeLookUp{side}": about_y(-MOST_LOOK_RAD),
+        f"eyeLookDown{side}": about_y(MOST_LOOK_RAD),
+        f"eyeLookOut{side}": about_z(out * MOST_LOOK_RAD),
+        f"eyeLookIn{side}": about_z(-out * MOST_LOOK_RAD),
     }
     for side, out in (("Left", 1.0), ("Right", -1.0))
 }
@@ -103,6 +104,23 @@ def moving_face(figure: Figure) -> Face:
         if kept := {n: m.astype(np.float32) for n, m in moves.items() if np.abs(m).max() > 1e-6}:
             shapes[garment.name] = kept
     return Face(Figure(figure.variant, garments), shapes)
+
+
+def look_shares(left_rad: float, down_rad: float) -> dict[str, float]:
+    """How far to go into each shape of the eyes, 0 to 1, so that they are turned so in the head."""
+    left, down = (float(np.clip(a / MOST_LOOK_RAD, -1.0, 1.0)) for a in (left_rad, down_rad))
+    shares: dict[str, float] = {}
+    for side, out in (("Left", left), ("Right", -left)):
+        for way, share in (("Up", -down), ("Down", down), ("Out", out), ("In", -out)):
+            shares[f"eyeLook{way}{side}"] = max(0.0, share)
+    return shares
+
+
+def eye_shapes(garment: Garment) -> dict[str, NDArray[np.float32]]:
+    """By shape, (N, 3) how far the vertices of a figure's eyeballs go; empty for all else."""
+    if garment.name != "eyes":
+        return {}
+    return {n: m.astype(np.float32) for n, m in _looks(garment.vertices.astype(float)).items()}
 
 
 def _height(points: Array) -> Array:

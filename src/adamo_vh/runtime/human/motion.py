@@ -18,6 +18,7 @@ from adamo_vh.geometry import Array, Vec3, wrap_angle
 from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.anatomy import eyes, grip
 from adamo_vh.runtime.human.elbow import Depth
+from adamo_vh.runtime.human.face import MOST_LOOK_RAD
 from adamo_vh.runtime.human.gait import Gait, gait
 from adamo_vh.runtime.human.grasp import Grip, Thing
 from adamo_vh.runtime.human.handling import Handling
@@ -34,9 +35,10 @@ from adamo_vh.runtime.human.postures import (
 )
 from adamo_vh.runtime.human.rotations import about_z, eased
 from adamo_vh.runtime.human.route import route
-from adamo_vh.runtime.human.skeleton import Pose, joint_frames
+from adamo_vh.runtime.human.skeleton import EYES, INDEX, REST, Pose, joint_frames
 from adamo_vh.runtime.navigation import Path
 
+_HEAD = INDEX["head"]
 _GAZE_RAD_S = 5.0
 _GAZE_LEAST_S = 0.35
 _LEAD_S = 0.45
@@ -84,6 +86,19 @@ class BodyFrame:
     def eyes(self) -> Vec3:
         """World place of the figure's eyes, which move with trunk and head."""
         return self._in_world(eyes(self.pose))
+
+    @property
+    def look_rad(self) -> tuple[float, float]:
+        """How the eyes are turned in the head to look at the gaze: to the left, and down."""
+        places, rotations = self.joints()
+        turn = rotations[_HEAD]
+        line = self.body.gaze.array() - (places[_HEAD] + turn @ (EYES - REST[_HEAD]))
+        x, y, z = turn.T @ line / max(float(np.linalg.norm(line)), 1e-6)
+        # What is behind her, her eyes do not follow: they would have to jump from side to side.
+        ahead = float(np.clip(0.5 + x, 0.0, 1.0))
+        left, down = ahead * math.asin(np.clip(y, -1, 1)), ahead * math.asin(np.clip(-z, -1, 1))
+        most = MOST_LOOK_RAD
+        return min(max(left, -most), most), min(max(down, -most), most)
 
 
 @dataclass(frozen=True, slots=True)
