@@ -73,10 +73,13 @@ export interface Pose {
   pelvis: [number, number, number];
   /** A unit quaternion x, y, z, w for every joint, relative to its parent. */
   joints: number[];
+  /** How the eyes are turned in the head, radians: left, down. */
+  eyes: [number, number];
   held: number | null;
   things: Record<string, Placed>;
   gone?: number[];
-  lights?: number;
+  /** How bright each light is, 0 to 1. */
+  lights?: number[];
 }
 
 export interface ObservedObject {
@@ -136,9 +139,10 @@ export type RunEvent =
     }
   | { type: "left_out"; step: number; call_id: string; name: string; why: string }
   | { type: "shown"; step: number; width_px: number; height_px: number }
-  | { type: "happened"; step: number; text: string; object_id: number | null }
-  | { type: "intervened"; step: number; kind: string; why: string }
+  | { type: "happened"; step: number; what: string; object_id: number | null; by_user: boolean }
+  | { type: "vetoed"; step: number; why: string }
   | { type: "restored"; step: number }
+  | { type: "lost"; step: number }
   | { type: "ended"; steps: number; reason: string; answer: string; why: string }
   | { type: "other"; name: string };
 

@@ -157,11 +157,12 @@ function readPose(from: Fields, head: { n: number; t: number }): Pose {
     body: three(from.body),
     pelvis: three(from.pelvis),
     joints: numbers(from.joints),
+    eyes: [number(list(from.eyes)[0]), number(list(from.eyes)[1])],
     held: numberOrNull(from.held),
     things,
   };
   if (Array.isArray(from.gone)) pose.gone = numbers(from.gone);
-  if (typeof from.lights === "number") pose.lights = number(from.lights, 1);
+  if (Array.isArray(from.lights)) pose.lights = numbers(from.lights);
   return pose;
 }
 
@@ -207,11 +208,13 @@ function readEvent(value: unknown): RunEvent {
     case "shown":
       return { type: "shown", step, width_px: number(from.width_px, 1), height_px: number(from.height_px, 1) };
     case "happened":
-      return { type: "happened", step, ...readHappening(fields(from.event)) };
-    case "intervened":
-      return { type: "intervened", step, kind: text(from.kind), why: text(from.why) };
+      return { type: "happened", step, ...readHappening(fields(from.event)), by_user: from.by_user === true };
+    case "vetoed":
+      return { type: "vetoed", step, why: text(from.why) };
     case "restored":
       return { type: "restored", step };
+    case "lost":
+      return { type: "lost", step };
     case "ended":
       return {
         type: "ended",
@@ -274,8 +277,6 @@ function readThought(from: Fields, step: number): RunEvent {
   };
 }
 
-function readHappening(from: Fields): { text: string; object_id: number | null } {
-  const id = numberOrNull(from.object_id) ?? numberOrNull(from.id);
-  const what = text(from.type).replaceAll("_", " ") || "something happened";
-  return { text: what, object_id: id };
+function readHappening(from: Fields): { what: string; object_id: number | null } {
+  return { what: text(from.type), object_id: numberOrNull(from.object_id) };
 }

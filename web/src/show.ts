@@ -24,7 +24,7 @@ export class Changes {
 export class Show {
   readonly track: Track;
   readonly player: Player;
-  readonly story = new Conversation();
+  readonly story: Conversation;
   /** The story, the status or a question changed. */
   readonly changes = new Changes();
   /** Another object is pointed at. */
@@ -37,6 +37,7 @@ export class Show {
   constructor(track: Track | Hello) {
     this.track = track instanceof Track ? track : new Track(track);
     this.player = new Player(this.track);
+    this.story = new Conversation(this.track.hello.scene);
     for (const event of this.track.events) this.story.add(event);
   }
 

@@ -13,11 +13,14 @@ const thought = (t: number, text: string, calls: object[]): EventMessage =>
 
 const scene = (readMessage({
   type: "hello",
-  scene: { furniture: [{ name: "dining table", center: [0, -3, 0.39], size: [1, 2, 0.78] }] },
+  scene: {
+    furniture: [{ name: "dining table", center: [0, -3, 0.39], size: [1, 2, 0.78] }],
+    objects: [{ id: 4, tag: "Cup_4" }],
+  },
 }) as Hello).scene;
 
 test("a call is settled by the feedback on it", () => {
-  const story = new Conversation();
+  const story = new Conversation(scene);
   story.add(told(0, { type: "started", instruction: "Take the cup" }));
   story.add(told(0.1, { type: "observed", step: 0, objects: [] }, "a.jpg"));
   story.add(thought(1, "There it is.", [{ call: { id: "c1", name: "Pick" }, arguments: { object: "Cup_45" } }]));
@@ -30,7 +33,7 @@ test("a call is settled by the feedback on it", () => {
 });
 
 test("a call that nobody asked for is shown too, and one that was left out", () => {
-  const story = new Conversation();
+  const story = new Conversation(scene);
   story.add(thought(1, "", [{ call: { id: "c1", name: "Walk" }, arguments: {} }]));
   story.add(told(2, { type: "left_out", call_id: "c1", name: "Walk", why: "One call a turn." }));
   story.add(told(2, { type: "acted", call_id: "x", name: "Look", arguments: {}, feedback: { outcome: "refused" } }));
@@ -38,23 +41,25 @@ test("a call that nobody asked for is shown too, and one that was left out", () 
 });
 
 test("an answer that asks is a question", () => {
-  const story = new Conversation();
+  const story = new Conversation(scene);
   story.add(told(1, { type: "ended", reason: "answered", answer: "Which cup do you mean?" }));
   expect(story.items[0]?.kind).toBe("question");
   expect(isQuestion("Done.")).toBe(false);
 });
 
 test("what the user did is in the story", () => {
-  const story = new Conversation();
+  const story = new Conversation(scene);
   const events: object[] = [
-    { type: "happened", event: { type: "object_moved", object_id: 4 } },
-    { type: "intervened", kind: "vetoed", why: "not that one" },
+    { type: "happened", event: { type: "object_moved", object_id: 4 }, by_user: true },
+    { type: "happened", event: { type: "object_taken", object_id: 5 } },
+    { type: "vetoed", why: "not that one" },
     { type: "restored" },
     { type: "ended", reason: "stopped", answer: "", why: "the user stopped it" },
   ];
   for (const event of events) story.add(told(1, event));
   expect(story.items.map((item) => item.kind === "turn" || item.text)).toEqual([
-    "object moved",
+    "You moved Cup 4",
+    "Somebody took something out of the room",
     "You objected: not that one",
     "Everything is back as it was before the last instruction",
     "Stopped by you: the user stopped it",
@@ -62,7 +67,7 @@ test("what the user did is in the story", () => {
 });
 
 test("unknown events change nothing", () => {
-  const story = new Conversation();
+  const story = new Conversation(scene);
   story.add(told(1, { type: "stood" } as unknown as RunEvent));
   expect(story.items).toEqual([]);
 });
@@ -82,7 +87,7 @@ test("what is not known is not shown as nothing", () => {
 });
 
 test("a turn keeps the state that was read, and says how far back she remembers", () => {
-  const story = new Conversation();
+  const story = new Conversation(scene);
   story.add(told(1, { type: "thought", step: 1, messages: 5, state_text: "# State", turn: { reply: { message: { text: "" }, usage: {} }, wishes: [] } }));
   const turn = story.items[0] as TurnItem;
   expect(turn.state).toBe("# State");

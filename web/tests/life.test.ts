@@ -3,10 +3,11 @@ import { describe, expect, it } from "vitest";
 import { type Bearing, Life, lookedAt, wished } from "../src/view/life.ts";
 
 const STILL = new Quaternion();
+const STRAIGHT = { yaw: 0, pitch: 0 };
 const BESIDE = new Vector3(2, 1.2, 0.1);
 
 function after(life: Life, seconds: number, bearing: Bearing, viewer = BESIDE): number {
-  for (let t = 0; t < seconds - 1e-9; t += 0.02) life.update(0.02, bearing, viewer);
+  for (let t = 0; t < seconds - 1e-9; t += 0.02) life.update(0.02, bearing, viewer, STRAIGHT);
   return life.neck.angleTo(STILL) + life.head.angleTo(STILL);
 }
 
@@ -27,7 +28,7 @@ describe("her bearing", () => {
     const life = new Life(() => false);
     after(life, 1, "listening");
     expect(after(life, 2, "busy")).toBeLessThan(0.002);
-    expect(life.update(0.02, "busy", BESIDE)).toBe(false);
+    expect(life.update(0.02, "busy", BESIDE, STRAIGHT)).toBe(false);
   });
   it("does not twist her neck for somebody behind her", () => {
     const behind = wished("listening", new Vector3(-2, 0.3, 0));
@@ -39,11 +40,11 @@ describe("her bearing", () => {
   it("comes to rest, so that nothing is drawn anew, unless she breathes", () => {
     const still = new Life(() => false);
     after(still, 2, "idle");
-    expect(still.update(0.02, "idle", BESIDE)).toBe(false);
-    expect(still.update(0.02, "idle", BESIDE.clone().addScalar(1e-5))).toBe(false);
+    expect(still.update(0.02, "idle", BESIDE, STRAIGHT)).toBe(false);
+    expect(still.update(0.02, "idle", BESIDE.clone().addScalar(1e-5), STRAIGHT)).toBe(false);
     const alive = new Life(() => true, () => 0.9);
     after(alive, 2, "idle");
-    expect(alive.update(0.02, "idle", BESIDE)).toBe(true);
+    expect(alive.update(0.02, "idle", BESIDE, STRAIGHT)).toBe(true);
     expect(alive.chest.angleTo(STILL)).toBeGreaterThan(0.01);
   });
   it("lets her eyes step to and fro, while the head rests", () => {
@@ -51,7 +52,7 @@ describe("her bearing", () => {
     const life = new Life(() => true, () => (turn++ * 0.37) % 1);
     const seen = new Set<string>();
     for (let i = 0; i < 300; i++) {
-      life.update(0.02, "idle", new Vector3(2, 0, 0));
+      life.update(0.02, "idle", new Vector3(2, 0, 0), STRAIGHT);
       seen.add(life.eyes.yaw.toFixed(2));
       expect(Math.abs(life.eyes.yaw)).toBeLessThan(0.06);
     }
@@ -60,7 +61,7 @@ describe("her bearing", () => {
   });
   it("has her eyes on whoever speaks before her head is there", () => {
     const life = new Life(() => false);
-    const aim = lookedAt("listening", BESIDE).yaw;
+    const aim = lookedAt("listening", BESIDE, STRAIGHT).yaw;
     after(life, 0.06, "listening");
     expect(life.eyes.yaw).toBeGreaterThan(0.2);
     const early = life.eyes.yaw;

@@ -33,6 +33,8 @@ class Pose:
     """Place of the first joint in the frame of the body, metres."""
     joints: _Numbers
     """The turn of each joint relative to its parent, as quaternions x, y, z, w in a row."""
+    eyes: _Numbers
+    """How the eyes are turned in the head, radians to the left and down."""
     held: int | None
     """Id of the object in the hand."""
     things: dict[str, _Numbers] = field(default_factory=dict)
@@ -48,6 +50,7 @@ class Pose:
             self.body,
             self.pelvis,
             self.joints,
+            self.eyes,
             self.held,
             before.things | self.things,
             before.gone if self.gone is None else self.gone,
@@ -118,7 +121,7 @@ class Posing:
         self._known = _Known(figure, things, gone, lights)
         return told
 
-    def _figure(self) -> tuple[_Numbers, _Numbers, _Numbers, int | None]:
+    def _figure(self) -> tuple[_Numbers, _Numbers, _Numbers, _Numbers, int | None]:
         from adamo_vh.runtime.human.rotations import quaternions
         from adamo_vh.runtime.human.skeleton import REST
 
@@ -130,6 +133,7 @@ class Posing:
             _rounded([at.x, at.y, body.heading_rad]),
             _rounded(REST[0] + pose.pelvis_shift),
             _rounded(turns.ravel()),
+            _rounded(list(shown.look_rad)),
             body.held,
         )
 

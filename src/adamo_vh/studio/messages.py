@@ -146,6 +146,7 @@ def pose(shown: Pose) -> Message:
         "body": shown.body,
         "pelvis": shown.pelvis,
         "joints": shown.joints,
+        "eyes": shown.eyes,
         "held": shown.held,
     }
     if shown.things:

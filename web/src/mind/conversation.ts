@@ -1,6 +1,7 @@
 // What was said, seen, thought and done, read from the events of a track.
 
-import type { Call, EventMessage, RunEvent } from "../protocol.ts";
+import type { Call, EventMessage, RunEvent, SceneShape } from "../protocol.ts";
+import { happeningWords } from "./words.ts";
 
 export type Observed = Extract<RunEvent, { type: "observed" }>;
 
@@ -71,8 +72,8 @@ export class Conversation {
   readonly views: Seen[] = [];
   /** Changes with every change. */
   version = 0;
-  tokens: [number, number] = [0, 0];
-  usd: number | null = null;
+
+  constructor(private readonly scene: SceneShape) {}
 
   add({ event, t, frame }: EventMessage): void {
     this.version++;
@@ -96,10 +97,13 @@ export class Conversation {
         this.turn?.closeUps.push(frame);
         break;
       case "happened":
-        this.say("note", t, event.text);
+        this.say("note", t, happeningWords(event, this.scene));
         break;
-      case "intervened":
-        this.say("note", t, [intervention(event.kind), event.why].filter(Boolean).join(": "));
+      case "vetoed":
+        this.say("note", t, ["You objected", event.why].filter(Boolean).join(": "));
+        break;
+      case "lost":
+        this.say("note", t, "An answer never came, and was asked for again");
         break;
       case "restored":
         this.say("note", t, "Everything is back as it was before the last instruction");
@@ -121,8 +125,6 @@ export class Conversation {
   }
 
   private think(event: Extract<RunEvent, { type: "thought" }>, t: number): void {
-    this.tokens = [this.tokens[0] + event.tokens[0], this.tokens[1] + event.tokens[1]];
-    if (event.usd !== null) this.usd = (this.usd ?? 0) + event.usd;
     this.items.push({
       kind: "turn",
       t,
@@ -165,10 +167,3 @@ export class Conversation {
     if (turn && !turn.deeds.length && turn.note.trim() === event.answer.trim()) turn.note = "";
   }
 }
-
-const INTERVENTIONS: Record<string, string> = {
-  vetoed: "You objected",
-  stopped: "You stopped her",
-};
-
-const intervention = (kind: string): string => INTERVENTIONS[kind] ?? kind.replaceAll("_", " ");

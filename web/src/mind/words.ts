@@ -1,6 +1,6 @@
 // Calls in words that a visitor understands, and numbers as people write them.
 
-import type { SceneShape } from "../protocol.ts";
+import type { RunEvent, SceneShape } from "../protocol.ts";
 import { number, text } from "../reading.ts";
 
 /** "Tape_4" as "Tape 4"; an opaque tag stays as it is. */
@@ -63,6 +63,25 @@ export function callWords(name: string, args: Record<string, unknown>, scene: Sc
       return "Finish";
     default:
       return name;
+  }
+}
+
+/** What somebody did in the room, in words. */
+export function happeningWords(event: Extract<RunEvent, { type: "happened" }>, { objects }: SceneShape): string {
+  const who = event.by_user ? "You" : "Somebody";
+  const tag = objects.find(({ id }) => id === event.object_id)?.tag;
+  const thing = tag ? spoken(tag) : "something";
+  switch (event.what) {
+    case "object_moved":
+      return `${who} moved ${thing}`;
+    case "object_taken":
+      return `${who} took ${thing} out of the room`;
+    case "object_added":
+      return `${who} brought ${thing} in`;
+    case "light_changed":
+      return `${who} changed a light`;
+    default:
+      return `Something happened: ${event.what.replaceAll("_", " ")}`;
   }
 }
 

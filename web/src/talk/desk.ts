@@ -38,9 +38,8 @@ export function buildDesk(show: Show, timeline: HTMLElement, speech: HTMLElement
     const isOff = show.hello.live && !show.connected && now !== "closed";
     write(doing, isOff ? "Connecting to the room" : show.hello.live ? DOING[now] : replayWords(show));
     dot.classList.toggle("busy", BUSY.includes(now) || isOff);
-    const told = show.status?.spent;
-    const { tokens, usd } = show.story;
-    write(spent, told ? spentWords([told.input_tokens, told.output_tokens], told.usd) : spentWords(tokens, usd));
+    const { input_tokens = 0, output_tokens = 0, usd = null } = show.status?.spent ?? {};
+    write(spent, spentWords([input_tokens, output_tokens], usd));
     talk?.update();
   };
   show.changes.listen(update);

@@ -13,9 +13,11 @@ export interface Moment {
   body: [number, number, number];
   pelvis: [number, number, number];
   joints: Float32Array;
+  eyes: [number, number];
   held: number | null;
   things: Map<number, Placed>;
   gone: ReadonlySet<number>;
+  /** How bright it is, where 1 is as at the start. */
   lights: number;
 }
 
@@ -45,6 +47,8 @@ export class Track {
   private readonly things = new Map<number, Stamped<Placed>[]>();
   private readonly gone: Stamped<ReadonlySet<number>>[] = [];
   private readonly lights: Stamped<number>[] = [];
+  /** All lights together, at the start. */
+  private bright = 0;
   private latest = 0;
   /** Serial number of the last message. */
   last = 0;
@@ -96,7 +100,11 @@ export class Track {
       else this.things.set(id, [{ t: pose.t, value }]);
     }
     if (pose.gone) this.gone.push({ t: pose.t, value: new Set(pose.gone) });
-    if (pose.lights !== undefined) this.lights.push({ t: pose.t, value: pose.lights });
+    if (pose.lights) {
+      const all = pose.lights.reduce((sum, light) => sum + light, 0);
+      if (!this.lights.length) this.bright = all;
+      this.lights.push({ t: pose.t, value: this.bright > 0 ? all / this.bright : 1 });
+    }
   }
 
   /** How the room stood at a time; null before the first pose is known. */
@@ -111,6 +119,7 @@ export class Track {
       body: blendBody(before, after, share),
       pelvis: blendThree(before.pelvis, after.pelvis, share),
       joints: blendQuaternions(before.joints, after.joints, share),
+      eyes: blendTwo(before.eyes, after.eyes, share),
       held: share < 0.5 ? before.held : after.held,
       things: this.thingsBetween(before.t, after.t, share),
       gone: valueAt(this.gone, before.t) ?? NONE,
@@ -148,6 +157,10 @@ function shareBetween(before: Pose, after: Pose, t: number): number {
   if (far > JUMP_M) return t >= after.t ? 1 : 0;
   const moving = Math.min(long, PAUSE_S);
   return Math.min(1, Math.max(0, (t - (after.t - moving)) / moving));
+}
+
+function blendTwo(a: readonly [number, number], b: readonly [number, number], share: number): [number, number] {
+  return [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
 }
 
 function blendThree(

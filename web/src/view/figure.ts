@@ -3,7 +3,7 @@
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type Bone, Group, type Material, Matrix4, type Object3D, Quaternion, type Skeleton, type SkinnedMesh, Vector3 } from "three";
 import { Face } from "./face.ts";
-import { type Bearing, Life } from "./life.ts";
+import { type Bearing, Life, type Look } from "./life.ts";
 import { bonesByName, nodesByName, skinnedIn } from "./loading.ts";
 import type { Room } from "./room.ts";
 import { Skin } from "./skin.ts";
@@ -28,6 +28,8 @@ export class Figure {
   private isFull = false;
   /** Whether her head was seen last. */
   private isWhole = true;
+  /** How the motion turns her eyes. */
+  private readonly gaze: Look = { yaw: 0, pitch: 0 };
   private readonly life = new Life(() => this.isFull);
   /** Joints that her bearing turns, and how the motion has them. */
   private readonly borne: { bone: Bone; joint: number; own: Quaternion; more: Quaternion }[];
@@ -89,6 +91,7 @@ export class Figure {
     // The lids turn about the Y axis; the face has a shape for it that lies flush.
     if (this.lids >= 0) this.face.turnLids(2 * Math.asin(q[this.lids * 4 + 1] ?? 0));
     for (const { own, joint } of this.borne) if (joint >= 0 && q.length >= joint * 4 + 4) own.fromArray(q, joint * 4);
+    [this.gaze.yaw, this.gaze.pitch] = moment.eyes;
     this.bear();
   }
 
@@ -102,7 +105,8 @@ export class Figure {
     // As the motion has trunk and head: what her bearing adds would lead it on.
     below.copy(base.matrixWorld);
     for (const { bone, own } of this.borne) below.multiply(above.compose(bone.position, own, bone.scale));
-    const moved = this.life.update(seconds, bearing, seen.copy(viewer).applyMatrix4(below.invert()).sub(EYES));
+    const from = seen.copy(viewer).applyMatrix4(below.invert()).sub(EYES);
+    const moved = this.life.update(seconds, bearing, from, this.gaze);
     if (moved) {
       this.face.look(this.life.eyes.yaw, this.life.eyes.pitch);
       this.bear();

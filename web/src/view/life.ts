@@ -1,5 +1,6 @@
 // Her bearing over every motion: she turns to whom she talks to, tilts her head when she listens, looks
-// aside when she thinks, and breathes. Her eyes are there at once, before the head, and never rest.
+// aside when she thinks, and breathes. Her eyes are there at once, before the head, and never rest; while
+// she does something they are where the motion has them.
 
 import { Quaternion, Vector3 } from "three";
 import type { Doing } from "../protocol.ts";
@@ -17,9 +18,13 @@ export const BEARINGS: Readonly<Record<Doing, Bearing>> = {
   closed: "idle",
 };
 
-interface Turn {
+/** How the eyes are turned; radians: left, down. */
+export interface Look {
   yaw: number;
   pitch: number;
+}
+
+interface Turn extends Look {
   roll: number;
 }
 
@@ -45,7 +50,7 @@ const TOWARDS: Readonly<Record<Bearing, number>> = { busy: 0, idle: 0.8, listeni
 const within = (most: number, value: number): number => Math.min(most, Math.max(-most, value));
 
 /** Which way whoever looks on is, and how much he counts: behind her she does not look round for anybody. */
-function towards(viewer: Vector3): { yaw: number; pitch: number; share: number } {
+function towards(viewer: Vector3): Look & { share: number } {
   const yaw = Math.atan2(viewer.y, viewer.x);
   const pitch = -Math.atan2(viewer.z, Math.hypot(viewer.x, viewer.y));
   return { yaw, pitch, share: Math.min(1, Math.max(0, (2.2 - Math.abs(yaw)) / 0.6)) };
@@ -65,12 +70,13 @@ export function wished(bearing: Bearing, viewer: Vector3): Turn {
   return turn;
 }
 
-/** Where the eyes look, from where the motion has the head; radians: left, down. */
-export function lookedAt(bearing: Bearing, viewer: Vector3, head = wished(bearing, viewer)): { yaw: number; pitch: number } {
-  if (bearing === "busy") return head;
+/** Where the eyes look, from where the motion has the head. */
+export function lookedAt(bearing: Bearing, viewer: Vector3, motion: Look, head = wished(bearing, viewer)): Look {
+  if (bearing === "busy") return motion;
   if (bearing === "thinking") return { yaw: head.yaw + 0.16, pitch: head.pitch - 0.1 };
   const { yaw, pitch, share } = towards(viewer);
-  return { yaw: share * yaw, pitch: share * pitch };
+  const own = 1 - share;
+  return { yaw: share * yaw + own * motion.yaw, pitch: share * pitch + own * motion.pitch };
 }
 
 const axes = { x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(0, 0, 1) };
@@ -87,10 +93,10 @@ export class Life {
   readonly neck = new Quaternion();
   readonly head = new Quaternion();
   readonly chest = new Quaternion();
-  /** How the eyes are turned in the head; radians: left, down. */
-  readonly eyes = { yaw: 0, pitch: 0 };
+  /** How the eyes are turned in the head. */
+  readonly eyes: Look = { yaw: 0, pitch: 0 };
   private readonly now: Turn = { yaw: 0, pitch: 0, roll: 0 };
-  private readonly glance = { yaw: 0, pitch: 0 };
+  private readonly glance: Look = { yaw: 0, pitch: 0 };
   private glanceAt = 0;
   private time = 0;
 
@@ -106,8 +112,9 @@ export class Life {
   /**
    * Go on; returns whether anything moved.
    * @param viewer From her head, as the motion turns it: X ahead, Y left, Z up.
+   * @param motion How the motion turns her eyes in the head.
    */
-  update(seconds: number, bearing: Bearing, viewer: Vector3): boolean {
+  update(seconds: number, bearing: Bearing, viewer: Vector3, motion: Look): boolean {
     this.time += seconds;
     const wish = wished(bearing, viewer);
     const lives = this.breathes();
@@ -121,7 +128,7 @@ export class Life {
       return now + left * (1 - Math.exp(-rate * seconds));
     };
     for (const key of ["yaw", "pitch", "roll"] as const) this.now[key] = ease(this.now[key], wish[key], EASE);
-    const line = lookedAt(bearing, viewer, wish);
+    const line = lookedAt(bearing, viewer, motion, wish);
     for (const key of ["yaw", "pitch"] as const) {
       const turn = within(MOST_EYES, line[key] - this.now[key]) + this.glance[key];
       this.eyes[key] = ease(this.eyes[key], turn, EYES_EASE);

@@ -31,6 +31,8 @@ const WRAPPINGS: Readonly<Record<number, Wrapping>> = {
   33648: MirroredRepeatWrapping,
 };
 
+const WHITE = new Uint8ClampedArray([255, 255, 255, 255]);
+
 interface Sampler {
   magFilter?: number;
   minFilter?: number;
@@ -70,7 +72,9 @@ export class Pictures implements GLTFLoaderPlugin {
 
   private async fill(texture: Texture, view: number, type: string): Promise<void> {
     const packed = (await this.parser.getDependency("bufferView", view)) as ArrayBuffer;
-    texture.image = await createImageBitmap(new Blob([packed], { type }), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
+    const whole = createImageBitmap(new Blob([packed], { type }), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
+    // A picture that cannot be unpacked costs its surface the pattern, and not the page its room.
+    texture.image = await whole.catch(() => createImageBitmap(new ImageData(WHITE, 1, 1)));
     texture.needsUpdate = true;
   }
 }
