@@ -74,9 +74,9 @@ class Solids:
         Returns:
             (N,) metres.
         """
-        half = self.halves + radius_m
-        inside = [(half - np.abs(self._local(p))).min(axis=1).max(initial=0.0) for p in points]
-        return np.array(inside)
+        apart = np.abs(self._local(points[:, None]))
+        inside = (self.halves + radius_m - apart).min(axis=-1)
+        return np.asarray(inside.max(axis=-1, initial=0.0))
 
     def block(self, start: Vec3, end: Vec3) -> bool:
         """Whether a straight line passes through any prism, not counting a skin of 1 cm."""
@@ -90,11 +90,11 @@ class Solids:
         return bool(passes.any())
 
     def _local(self, point: Array) -> Array:
-        """(S, 3) a point, (3,), in each prism's own frame."""
+        """(..., S, 3) a point, (3,), or points, (N, 1, 3), in each prism's own frame."""
         cos, sin = self.axes.T
         offset = point - self.centres
-        x, y = offset[:, 0], offset[:, 1]
-        return np.stack([x * cos + y * sin, y * cos - x * sin, offset[:, 2]], axis=1)
+        x, y = offset[..., 0], offset[..., 1]
+        return np.stack([x * cos + y * sin, y * cos - x * sin, offset[..., 2]], axis=-1)
 
 
 def outline(points: Array, directions: int = 32) -> Array:

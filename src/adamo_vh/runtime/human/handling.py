@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from adamo_vh.geometry import Array
 from adamo_vh.runtime.human.anatomy import eyes, grip, turned
+from adamo_vh.runtime.human.clearing import (
+    Depth,
+    clear_left,
+    clear_swing,
+    clear_ways,
+    held_off,
+    swung,
+)
 from adamo_vh.runtime.human.closing import FINGER_JOINTS
-from adamo_vh.runtime.human.elbow import Depth, clear_swing, swung
 from adamo_vh.runtime.human.grasp import Grip
 from adamo_vh.runtime.human.ik import arm_to, hand_to
 from adamo_vh.runtime.human.postures import CARRY, carrying, gazing, helping, standing
@@ -23,6 +31,14 @@ _GRASP_S = 0.36
 """How long the hand stays at the target to close or open."""
 _NEAR = (0.7, 0.85, 1.0)
 """Shares of the way at which the arm is kept out of furniture."""
+_UNDERWAY = np.linspace(0.25, 0.9, 8)
+"""Shares of the way at which the hand is kept out of it."""
+_IDLE = (0.4, 0.7, 1.0)
+"""Shares of the way at which the left arm is."""
+_MOST_TRIES = 4
+"""So many detours are tried with the whole arm."""
+_ENOUGH_M = 0.03
+"""An arm that costs no more is out of furniture."""
 _ON_THE_WAY_M = (0.88, 1.02, 1.14, 1.32)
 """Height of the hand in front of the body, on its way to 0.7, 1.0, 1.3 and 2.0 m."""
 _MIRROR = np.array([1.0, -1.0, 1.0])
@@ -42,17 +58,33 @@ class Handling:
     """Whether the hand comes back full; else it goes out full."""
     grip: Grip = field(default_factory=Grip)
     """How the hand holds the thing."""
+    detour: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) how far the way of the hand is bent aside in its middle, metres."""
     swing_rad: float = 0.0
-    """How far the elbow is swung aside at the target; see `elbow`."""
+    """How far the elbow is swung aside at the target; see `clearing`."""
+    left_rad: tuple[float, float] = (0.0, 0.0)
+    """How the left arm is held off; see `clearing.held_off`."""
 
     def clear(self, depth: Depth) -> Handling:
-        """The same reach with its elbow where the arm is least in what is solid.
+        """The same reach with its arms where they are least in what is solid.
 
         Args:
             depth: Of balls whose middles are in the frame of the body.
         """
-        moments = (self.pose(self.way_s * part) for part in _NEAR)
-        return replace(self, swing_rad=clear_swing(moments, depth))
+        straight = [self._way(self._body(part), part, full=False) for part in _UNDERWAY]
+        found: list[tuple[float, Handling]] = []
+        for deep, detour in clear_ways(np.array(straight), _bulge(eased(_UNDERWAY)), depth):
+            around = replace(self, detour=detour)
+            moments = (around.pose(self.way_s * part) for part in _NEAR)
+            swing, more = clear_swing(moments, depth)
+            found.append((deep + more, replace(around, swing_rad=swing)))
+            if more < _ENOUGH_M or len(found) == _MOST_TRIES:
+                break
+        best = min(found, key=lambda one: one[0])[1]
+        if self.grip.other() is not None:
+            return best
+        moments = (best.pose(self.way_s * part) for part in _IDLE)
+        return replace(best, left_rad=clear_left(moments, depth))
 
     @cached_property
     def stretch(self) -> Stretch:
@@ -83,9 +115,7 @@ class Handling:
         back = time_s > self.event_s
         # Linear progress of the way: 0 at home, 1 at the target.
         part = min(1.0, (self.duration_s - time_s if back else time_s) / self.way_s)
-        bend = self._bend(part)
-        body = stretched(self._standing, self.stretch, bend, part)
-        body = self._watching(body, bend)
+        body = self._body(part)
         full = back == self.takes
         arm = self._arm(body, part, full)
         rotations = body.rotations.copy()
@@ -93,11 +123,17 @@ class Handling:
         rotations[_FINGERS] = self._fingers(time_s, part, full)
         return self._helped(Pose(rotations, body.pelvis_shift), part, full)
 
+    def _body(self, part: float) -> Pose:
+        """All of the body but the arms."""
+        bend = self._bend(part)
+        return self._watching(stretched(self._standing, self.stretch, bend, part), bend)
+
     def _helped(self, pose: Pose, part: float, full: bool) -> Pose:
-        """The left hand on the thing too, if it takes both."""
+        """The left hand on the thing too, if it takes both; else the left arm out of the way."""
         other = self.grip.other()
         if other is None:
-            return pose
+            back, bend = (float(eased(part)) * angle for angle in self.left_rad)
+            return held_off(pose, back, bend) if back or bend else pose
         place = grip(pose, "r", self.grip.offset) if full else self.target
         weight = 1.0 if full else float(eased((part - 0.25) / 0.75))
         turn = _between(other.home(), other.there(self.target * _MIRROR), float(eased(part)))
@@ -117,13 +153,8 @@ class Handling:
     def _arm(self, body: Pose, part: float, full: bool) -> Pose:
         """The right arm: it leaves home, and meets the target at the end of the way."""
         along = float(eased(part))
-        base = self._home(full)
-        # The arc is drawn for a body that stands, and goes along with the shoulder as it bends;
-        # so the hand never comes too close to the shoulder.
-        goal = self.target - (_shoulder(self._bent) - _shoulder(base))
         offset = self.grip.offset
-        way = _arc(grip(base, "r", offset), goal, float(self.target[2]), along)
-        way += _shoulder(body) - _shoulder(base)
+        way = self._way(body, part, full)
         turn = _between(self.grip.home(), self.grip.there(self.target), along)
         if turn is None:
             wrist = blended(np.eye(3), open_hand(float(self.target[2]))["hand_r"], along)
@@ -136,6 +167,17 @@ class Handling:
         weight = float(eased(part / 0.6))
         rotations = blended(body.rotations, solved.rotations, weight)
         return Pose(rotations, body.pelvis_shift)
+
+    def _way(self, body: Pose, part: float, full: bool) -> Array:
+        """(3,) where the hand is on its way."""
+        base = self._home(full)
+        # The arc is drawn for a body that stands, and goes along with the shoulder as it bends;
+        # so the hand never comes too close to the shoulder.
+        goal = self.target - (_shoulder(self._bent) - _shoulder(base))
+        along = float(eased(part))
+        start = grip(base, "r", self.grip.offset)
+        way = _arc(start, goal, float(self.target[2]), along) + _bulge(along) * self.detour
+        return np.asarray(way + _shoulder(body) - _shoulder(base))
 
     @cached_property
     def _standing(self) -> Pose:
@@ -172,6 +214,11 @@ def _between(home: Array | None, there: Array | None, along: float) -> Array | N
 
 def _shoulder(pose: Pose) -> Array:
     return np.asarray(joint_frames(pose)[0][INDEX["upper_arm_r"]])
+
+
+def _bulge(along: Any) -> Any:
+    """How much of a detour is taken at a share of the way: nothing at its ends, 0.75 halfway."""
+    return 3 * along * (1 - along)
 
 
 def _arc(start: Array, goal: Array, height_m: float, along: float) -> Array:

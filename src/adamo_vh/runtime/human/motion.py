@@ -17,7 +17,7 @@ import numpy as np
 from adamo_vh.geometry import Array, Vec3, wrap_angle
 from adamo_vh.runtime.embodiment import Stance
 from adamo_vh.runtime.human.anatomy import eyes, grip
-from adamo_vh.runtime.human.elbow import Depth
+from adamo_vh.runtime.human.clearing import Depth
 from adamo_vh.runtime.human.face import MOST_LOOK_RAD
 from adamo_vh.runtime.human.gait import Gait, gait
 from adamo_vh.runtime.human.grasp import Grip, Thing
