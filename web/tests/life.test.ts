@@ -69,6 +69,18 @@ describe("her bearing", () => {
     expect(life.eyes.yaw).toBeLessThan(early / 4);
     expect(aim).toBeCloseTo(Math.atan2(BESIDE.y, BESIDE.x));
   });
+  it("has her eyes where the motion has them while she does something, and nothing else is turned", () => {
+    const life = new Life(() => false);
+    const gaze = { yaw: 0.2, pitch: -0.1 };
+    for (let i = 0; i < 20; i++) {
+      life.update(0.02, "busy", BESIDE, gaze);
+      expect(life.isTurned).toBe(false);
+    }
+    expect(life.eyes.yaw).toBeCloseTo(0.2, 2);
+    expect(life.eyes.pitch).toBeCloseTo(-0.1, 2);
+    life.update(0.02, "listening", BESIDE, gaze);
+    expect(life.isTurned).toBe(true);
+  });
   it("looks with her eyes where her head does not quite go", () => {
     const life = new Life(() => false);
     after(life, 2, "idle");

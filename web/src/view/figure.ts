@@ -109,7 +109,7 @@ export class Figure {
     const moved = this.life.update(seconds, bearing, from, this.gaze);
     if (moved) {
       this.face.look(this.life.eyes.yaw, this.life.eyes.pitch);
-      this.bear();
+      if (this.life.isTurned) this.bear();
     }
     return moved;
   }

@@ -95,6 +95,8 @@ export class Life {
   readonly chest = new Quaternion();
   /** How the eyes are turned in the head. */
   readonly eyes: Look = { yaw: 0, pitch: 0 };
+  /** Whether the last step turned more than the eyes. */
+  isTurned = false;
   private readonly now: Turn = { yaw: 0, pitch: 0, roll: 0 };
   private readonly glance: Look = { yaw: 0, pitch: 0 };
   private glanceAt = 0;
@@ -128,6 +130,7 @@ export class Life {
       return now + left * (1 - Math.exp(-rate * seconds));
     };
     for (const key of ["yaw", "pitch", "roll"] as const) this.now[key] = ease(this.now[key], wish[key], EASE);
+    this.isTurned = moved;
     const line = lookedAt(bearing, viewer, motion, wish);
     for (const key of ["yaw", "pitch"] as const) {
       const turn = within(MOST_EYES, line[key] - this.now[key]) + this.glance[key];
