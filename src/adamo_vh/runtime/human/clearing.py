@@ -36,6 +36,7 @@ _LEFT_ARMS_RAD = tuple(
     for back in np.radians([0, 25, -25, 45, -45])
     for bend in np.radians([0, 40, 80])
 )
+"""How the left arm may be held: swung back, and its elbow bent."""
 _ALONG = np.linspace(0.25, 1.0, 4)[:, None], np.linspace(0.15, 0.9, 6)[:, None]
 """Where upper arm and forearm are tried: the shoulder has no choice."""
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -32,7 +31,7 @@ _GRASP_S = 0.36
 _NEAR = (0.7, 0.85, 1.0)
 """Shares of the way at which the arm is kept out of furniture."""
 _UNDERWAY = np.linspace(0.25, 0.9, 8)
-"""Shares of the way at which the hand is kept out of it."""
+"""Shares of the way at which the hand is kept out of it too."""
 _IDLE = (0.4, 0.7, 1.0)
 """Shares of the way at which the left arm is."""
 _MOST_TRIES = 4
@@ -216,9 +215,9 @@ def _shoulder(pose: Pose) -> Array:
     return np.asarray(joint_frames(pose)[0][INDEX["upper_arm_r"]])
 
 
-def _bulge(along: Any) -> Any:
+def _bulge(along: Array | float) -> Array:
     """How much of a detour is taken at a share of the way: nothing at its ends, 0.75 halfway."""
-    return 3 * along * (1 - along)
+    return np.asarray(3 * along * (1 - along))
 
 
 def _arc(start: Array, goal: Array, height_m: float, along: float) -> Array:

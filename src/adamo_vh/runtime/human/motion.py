@@ -35,7 +35,7 @@ from adamo_vh.runtime.human.postures import (
 )
 from adamo_vh.runtime.human.rotations import about_z, eased
 from adamo_vh.runtime.human.route import route
-from adamo_vh.runtime.human.skeleton import EYES, INDEX, REST, Pose, joint_frames
+from adamo_vh.runtime.human.skeleton import INDEX, Pose, joint_frames
 from adamo_vh.runtime.navigation import Path
 
 _HEAD = INDEX["head"]
@@ -90,9 +90,8 @@ class BodyFrame:
     @property
     def look_rad(self) -> tuple[float, float]:
         """How the eyes are turned in the head to look at the gaze: to the left, and down."""
-        places, rotations = self.joints()
-        turn = rotations[_HEAD]
-        line = self.body.gaze.array() - (places[_HEAD] + turn @ (EYES - REST[_HEAD]))
+        line = (self.body.gaze - self.eyes).array()
+        turn = self.joints()[1][_HEAD]
         x, y, z = turn.T @ line / max(float(np.linalg.norm(line)), 1e-6)
         # What is behind her, her eyes do not follow: they would have to jump from side to side.
         ahead = float(np.clip(0.5 + x, 0.0, 1.0))
