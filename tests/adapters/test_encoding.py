@@ -88,6 +88,12 @@ def test_without_ffmpeg_an_mp4_names_what_helps(tmp_path, monkeypatch):
     monkeypatch.setattr(encoding, "ffmpeg", lambda: None)
     with pytest.raises(ConfigError, match=r"apt-get install ffmpeg.*webm"):
         Film(tmp_path / "film.mp4", SIZE, 15.0)
+    assert not list(tmp_path.iterdir())
+    older = tmp_path / "film.mp4"
+    older.write_bytes(b"an older film")
+    with pytest.raises(ConfigError):
+        Film(older, (64, 48), 15)
+    assert older.read_bytes() == b"an older film"
 
 
 def test_an_encoder_that_breaks_off_is_an_error_and_no_hang(tmp_path, monkeypatch):

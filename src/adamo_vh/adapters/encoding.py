@@ -55,13 +55,19 @@ class Film:
         """
         if path.suffix not in ENDINGS:
             raise ConfigError(f"{path}: films end in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}.")
+        is_new = not path.exists()
         # Encoders say no more than that they cannot; and that not in one line.
         with naming("written", make_folder(path.parent) / path.name):
             path.touch()
         self.path, self._rate = path, rate
         self.count = 0
         """Pictures so far."""
-        self._put, self._end = _encoder(path, size_px, rate)
+        try:
+            self._put, self._end = _encoder(path, size_px, rate)
+        except ConfigError:
+            if is_new:
+                path.unlink()
+            raise
         self._waiting: Queue[tuple[_Picture, int] | None] = Queue(_AHEAD)
         self._fault: Exception | None = None
         self._thread = threading.Thread(target=self._work, name="adamo-vh-film", daemon=True)
