@@ -149,10 +149,19 @@ def add_material(writer: GlbWriter, material: Material, *, repeats: bool = False
     if material.texture is not None:
         index = writer.texture(material.texture, repeats=repeats, jpeg=False)
         surface["baseColorTexture"] = {"index": index}
-    return writer.add(
-        "materials",
-        {"name": material.name, "pbrMetallicRoughness": surface, "doubleSided": True},
-    )
+    made: dict[str, Any] = {
+        "name": material.name,
+        "pbrMetallicRoughness": surface,
+        "doubleSided": True,
+    }
+    if material.emission:
+        made["emissiveFactor"] = emissive(material)
+    return writer.add("materials", made)
+
+
+def emissive(material: Material) -> list[float]:
+    """The light that a surface gives by itself, red, green and blue, linear, 0 to 1."""
+    return [round(linear(min(1.0, c * material.emission)), 4) for c in material.rgba[:3]]
 
 
 def linear(value: float) -> float:

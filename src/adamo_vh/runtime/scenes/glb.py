@@ -30,6 +30,7 @@ from adamo_vh.runtime.assets.glb_writing import (
     SIGNED_BYTE,
     VERTICES,
     GlbWriter,
+    emissive,
     goes_beyond,
     linear,
 )
@@ -191,8 +192,7 @@ class _Meshes:
         if is_sunlit:
             made["extensions"] = {"KHR_materials_unlit": {}}
         elif material.emission:
-            shine = [round(linear(c * material.emission), 4) for c in material.rgba[:3]]
-            made["emissiveFactor"] = shine
+            made["emissiveFactor"] = emissive(material)
         return self._writer.add("materials", made)
 
     def _primitive(self, parts: Sequence[Part], material: int) -> dict[str, Any]:

@@ -112,6 +112,15 @@ def test_a_colour_is_what_screens_show():
     assert card(painted(None, grey)).material.rgba == pytest.approx((0.5, 0.5, 0.5, 1.0), abs=1e-3)
 
 
+def test_what_shines_by_itself_is_as_bright_as_the_file_says():
+    black = {"pbrMetallicRoughness": {"baseColorFactor": [0.0, 0.0, 0.0, 1.0]}}
+    shining = card(painted(None, black | {"emissiveFactor": [1.0, 1.0, 1.0]})).material
+    assert shining.rgba == (1.0, 1.0, 1.0, 1.0) and shining.emission == 1.0
+    assert card(painted(None, black)).material.emission == 0.0
+    with_picture = painted(png(), {"emissiveFactor": [1.0, 1.0, 1.0]})
+    assert card(with_picture).material.emission == 0.0
+
+
 def test_the_older_kind_of_material_is_read():
     older = {"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [1, 0, 0, 1]}}}
     assert card(painted(None, older)).material.rgba == (1.0, 0.0, 0.0, 1.0)

@@ -170,6 +170,8 @@ class Material(_Part):
     alpha: str = Field(default="OPAQUE", alias="alphaMode")
     cutoff: float = Field(default=0.5, alias="alphaCutoff")
     two_sided: bool = Field(default=False, alias="doubleSided")
+    glow: tuple[float, float, float] = Field(default=(0.0, 0.0, 0.0), alias="emissiveFactor")
+    glow_texture: TextureUse | None = Field(default=None, alias="emissiveTexture")
     extensions: dict[str, Any] = {}
 
 

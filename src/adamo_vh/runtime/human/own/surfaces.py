@@ -84,7 +84,13 @@ class Surfaces:
         name = readable(told.name or f"material {number}")[:60]
         picture = self._picture(use, name)
         alpha = None
-        red, green, blue = (round(float(v), 9) for v in srgb(np.array(factor[:3])))
+        colour, emission = np.clip(factor[:3], 0.0, 1.0), 0.0
+        # Where it shines with a picture, most of that is black, and what shines is not known here.
+        if picture is None and told.glow_texture is None and max(told.glow) > 0.0:
+            shine = np.clip(told.glow, 0.0, 1.0)
+            colour = np.clip(colour + shine, 0.0, 1.0)
+            emission = float(shine.sum() / colour.sum())
+        red, green, blue = (round(float(v), 9) for v in srgb(colour))
         opacity, is_seen = float(np.clip(factor[3], 0.0, 1.0)), True
         solid_from = told.cutoff if told.alpha == "MASK" else _HALF
         if told.alpha in ("MASK", "BLEND"):
@@ -99,6 +105,7 @@ class Surfaces:
             None if picture is None else np.ascontiguousarray(picture[..., :3]),
             specular=0.05 + 0.15 * (1.0 - rough),
             shininess=min(1.0, (1.0 - rough) / 0.6),
+            emission=emission,
         )
         return Surface(material, alpha, solid_from, is_seen, told.two_sided, _shift(use))
 
