@@ -97,8 +97,7 @@ def clear_left(poses: Iterable[Pose], depth: Depth) -> tuple[float, float]:
     moments = list(poses)
     costs = []
     for arm in _LEFT_ARMS_RAD:
-        held = [_points(held_off(pose, *arm), "l") for pose in moments]
-        deep = sum(float(depth(points, _THICK_M).sum()) for points in held)
+        deep = _deep([held_off(pose, *arm) for pose in moments], "l", depth)
         costs.append(deep + _COSTS_M * sum(map(abs, arm)))
     return _LEFT_ARMS_RAD[int(np.argmin(costs))]
 
@@ -114,8 +113,12 @@ def _cost(poses: Sequence[Pose], depth: Depth, swing_rad: float) -> float:
     wrists = rotation_vectors(np.stack([pose.rotations[_ARM[2]] for pose in poses]))
     if swing_rad and np.linalg.norm(wrists, axis=1).max() > WRIST_RAD:
         return np.inf
-    deep = sum(float(depth(_points(pose, "r"), _THICK_M).sum()) for pose in poses)
-    return deep + _COSTS_M * abs(swing_rad)
+    return _deep(poses, "r", depth) + _COSTS_M * abs(swing_rad)
+
+
+def _deep(poses: Sequence[Pose], side: str, depth: Depth) -> float:
+    """How deep an arm is in what is solid, summed over it and over moments, metres."""
+    return sum(float(depth(_points(pose, side), _THICK_M).sum()) for pose in poses)
 
 
 def _points(pose: Pose, side: str) -> Array:
